@@ -1,0 +1,43 @@
+# How every target of Limn is compiled, said once.
+
+add_library(limn_options INTERFACE)
+target_compile_options(limn_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Werror)
+target_compile_definitions(limn_options INTERFACE GLM_FORCE_DEPTH_ZERO_TO_ONE GLM_FORCE_XYZW_ONLY)
+target_include_directories(limn_options INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR})
+if(LIMN_SANITIZE)
+  target_compile_options(limn_options INTERFACE -fsanitize=${LIMN_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(limn_options INTERFACE -fsanitize=${LIMN_SANITIZE})
+endif()
+
+# limn_library(NAME LIBS lib...): a static library of every .cpp beside the caller.
+function(limn_library name)
+  cmake_parse_arguments(ARG "" "" "LIBS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  if(sources)
+    add_library(${name} STATIC ${sources})
+    target_link_libraries(${name} PUBLIC limn_options ${ARG_LIBS})
+  else()
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE limn_options ${ARG_LIBS})
+  endif()
+endfunction()
+
+# limn_tests(PREFIX LIBS lib... [TIMEOUT seconds]): one GoogleTest program for every *_test.cpp beside the caller,
+# named PREFIX_<stem> and run by CTest as a whole, so that a device is opened once a program.
+function(limn_tests prefix)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "LIBS" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 600)
+  endif()
+  find_package(GTest REQUIRED)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*_test.cpp)
+  foreach(source IN LISTS sources)
+    get_filename_component(stem ${source} NAME_WE)
+    set(target ${prefix}_${stem})
+    add_executable(${target} ${source})
+    target_link_libraries(${target} PRIVATE limn_options ${ARG_LIBS} GTest::gtest GTest::gmock GTest::gtest_main)
+    target_compile_definitions(${target} PRIVATE LIMN_BUILD_DIR="${CMAKE_BINARY_DIR}" LIMN_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+    add_test(NAME ${target} COMMAND ${target})
+    set_tests_properties(${target} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${prefix})
+  endforeach()
+endfunction()

@@ -1,0 +1,94 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "renderer/base/result.hpp"
+#include "renderer/scene/scene.hpp"
+
+namespace limn {
+
+/// What an edit costs, cheapest first. DESIGN.md section 3.
+enum class CostClass : uint32_t { none, displayOnly, relight, regather, rebuild, reload };
+const char* costClassName(CostClass cost);  ///< "none", "display-only", "relight", "re-gather", "rebuild", "reload"
+
+enum class ToneMap : uint32_t { pbrNeutral, aces, agx, linear };
+std::optional<ToneMap> toneMapFromName(std::string_view name);  ///< "pbr-neutral", "aces", "agx", "linear"
+const char* toneMapName(ToneMap map);
+
+/// How radiance becomes display values; never restarts sampling.
+struct ResolveSettings {
+  float exposure = 0.0f;            ///< [EV], radiance is multiplied by 2^exposure
+  ToneMap toneMap = ToneMap::pbrNeutral;
+  bool operator==(const ResolveSettings&) const = default;
+};
+
+/// Absent fields keep their value. Ranges are checked by validate().
+struct SetMaterial {
+  uint32_t material = 0;
+  std::optional<glm::vec4> baseColor;
+  std::optional<float> metallic, roughness;
+  std::optional<glm::vec3> emission;
+  std::optional<float> ior, transmission, thickness, attenuationDistance;
+  std::optional<glm::vec3> attenuationColor;
+  std::optional<float> specular;
+  std::optional<glm::vec3> specularColor;
+  std::optional<float> clearcoat, clearcoatRoughness, normalScale, alphaCutoff;
+  std::optional<AlphaMode> alphaMode;
+};
+struct SetLight {
+  uint32_t light = 0;
+  std::optional<glm::vec3> color;
+  std::optional<float> intensity, range, innerConeAngle, outerConeAngle;
+};
+struct SetNodeTransform {
+  uint32_t node = 0;
+  std::optional<glm::dvec3> translation;
+  std::optional<glm::dquat> rotation;   ///< normalised on application
+  std::optional<glm::dvec3> scale;
+};
+struct SetEnvironment {
+  std::optional<glm::vec3> radiance;
+  std::optional<float> rotation;
+};
+struct SetView { View view; };
+struct SetResolve {
+  std::optional<float> exposure;
+  std::optional<ToneMap> toneMap;
+};
+/// Technique and its parameters by announced name; the session checks them against the registry.
+struct SetTechnique {
+  std::optional<std::string> technique;
+  std::vector<std::pair<std::string, double>> parameters;
+};
+struct SetImageSize { uint32_t width = 0, height = 0; };  ///< [pixel]
+
+using Edit = std::variant<SetMaterial, SetLight, SetNodeTransform, SetEnvironment, SetView, SetResolve, SetTechnique,
+                          SetImageSize>;
+
+/// What a batch of edits changed, as the derived data need to know it.
+struct ChangeSet {
+  bool everything = false;             ///< a new scene
+  std::vector<uint32_t> materials;     ///< shading data changed
+  std::vector<uint32_t> emissive;      ///< materials whose emission changed (the light list changes)
+  std::vector<uint32_t> lights;
+  std::vector<uint32_t> nodes;         ///< nodes whose world matrix changed, descendants included; sorted, unique
+  bool environment = false;
+  bool view = false;
+  bool resolve = false;
+  bool empty() const;
+  /// The dearest class among the changes of the scene.
+  CostClass cost() const;
+};
+
+/// Checks one edit of the scene (indices in range, finite numbers, ranges of glTF) and says the field that is wrong
+/// in Error::place ("material", "roughness", ...). SetResolve and SetView are checked too; SetTechnique and
+/// SetImageSize are the session's.
+Result<void> validate(const Scene& scene, const Edit& edit);
+
+/// Applies the scene part of a batch. All edits were validated. Values that equal the present ones change nothing and
+/// are not in the ChangeSet. Sequential: the later edit of one field wins.
+ChangeSet apply(Scene& scene, ResolveSettings& resolve, const std::vector<Edit>& edits);
+
+}  // namespace limn

@@ -1,0 +1,51 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "renderer/base/result.hpp"
+#include "renderer/scene/scene.hpp"
+
+namespace limn {
+
+/// Limits checked before anything large is allocated.
+struct LoadLimits {
+  uint64_t maxFileBytes = 2ull << 30;
+  uint64_t maxTriangles = 64'000'000;
+  uint64_t maxVertices = 192'000'000;
+  uint32_t maxNodes = 1'000'000;
+  uint32_t maxImageSide = 16'384;       ///< [texel]
+  uint64_t maxImageBytes = 1ull << 30;  ///< decoded, all images together
+  uint32_t maxJsonDepth = 64;
+};
+
+struct LoadOptions {
+  std::filesystem::path assetRoot;  ///< URIs may not leave it; empty: the file's own directory
+  LoadLimits limits;
+};
+
+/// What was found, what is not supported, and what was added so that the scene can be seen.
+struct LoadReport {
+  struct Item {
+    std::string feature;                 ///< "KHR_materials_iridescence", "primitive mode LINES", "TEXCOORD_2", ...
+    std::vector<std::string> materials;  ///< names (or "#index") of the affected materials; empty: not a material's
+    std::string note;                    ///< one sentence: what happens instead
+  };
+  std::vector<Item> unsupported;
+  std::vector<std::string> notes;        ///< "no camera: one was added that frames the scene", ...
+  uint64_t triangles = 0, degenerateTriangles = 0, vertices = 0, imageBytes = 0;
+};
+
+struct LoadedScene {
+  Scene scene;
+  LoadReport report;
+};
+
+/// Reads .gltf or .glb. Any thread. Errors name the file and the JSON pointer ("cube.gltf#/accessors/3/count").
+/// Skins and morph targets are applied at time zero. Nothing outside the asset root is opened.
+Result<LoadedScene> loadGltf(const std::filesystem::path& file, const LoadOptions& options = {});
+
+/// Reads an .hdr or .exr latitude-longitude image for the environment. NaN and infinity become 0 and are counted in `notes`.
+Result<Image> loadEnvironmentImage(const std::filesystem::path& file, const LoadLimits& limits, std::vector<std::string>& notes);
+
+}  // namespace limn

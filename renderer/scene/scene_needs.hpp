@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "renderer/scene/scene.hpp"
+
+namespace limn {
+
+/// What a scene contains that costs work; computed once a ChangeSet. Selects passes, caches and specialization constants.
+struct SceneNeeds {
+  bool punctualLights = false;
+  bool emissiveTriangles = false;
+  bool environment = false;       ///< any non-zero radiance from outside
+  bool environmentImage = false;
+  bool textures = false;          ///< any material that a node uses samples an image
+  bool normalMaps = false;
+  bool alpha = false;             ///< MASK or BLEND materials in use
+  bool transmission = false;
+  bool clearcoat = false;
+  bool glossy = false;            ///< any specular reflection that is not rough diffuse
+  bool mirror = false;            ///< roughness below the delta limit, or smooth transmission
+  bool vertexColors = false;
+  bool operator==(const SceneNeeds&) const = default;
+};
+SceneNeeds sceneNeeds(const Scene& scene);
+
+/// Names of the set flags, for statistics and logs.
+std::vector<std::string> describe(const SceneNeeds& needs);
+
+}  // namespace limn

@@ -1,0 +1,53 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "renderer/base/result.hpp"
+#include "renderer/session/mailbox.hpp"
+
+namespace limn::vk { class Device; }
+
+namespace limn {
+
+struct SessionConfig {
+  uint32_t width = 512, height = 512;  ///< [pixel]
+  std::string technique;               ///< empty: the first of the registry
+  std::vector<std::pair<std::string, double>> parameters;
+  uint32_t seed = 0;
+  double quantumSeconds = 0.015;       ///< device time between two looks at the mailbox
+  double frameSeconds = 0.1;           ///< at rest, the time between two published frames at first; grows as it converges
+  uint64_t memoryBudget = 0;           ///< [byte] on the device; 0: no limit of ours
+};
+
+/// The progressive loop over one scene: drain mailbox, restart plan, one quantum of work, publish if due.
+/// Made, used and destroyed on one thread, the render thread; it meets others in the three boxes only.
+class Session {
+ public:
+  static Result<std::unique_ptr<Session>> create(vk::Device& device, Scene scene, LoadReport report, const SessionConfig& config,
+                                                 Mailbox& mailbox, FrameSlot& frames, StatusQueue& replies);
+  ~Session();
+
+  /// One turn of the loop. Returns false when there was nothing to do: converged or unwatched, and no mail.
+  /// Device errors end the session: Error code "device-lost" or "device".
+  Result<bool> step();
+
+  /// Runs whole passes, without publishing, until `steps` passes have been made since the restart. For `limn render` and tests.
+  Result<void> runSteps(uint32_t steps);
+  /// Render thread: steps until the mailbox is closed, sleeping when idle.
+  Result<void> run();
+
+  const Status& status() const;
+  uint64_t filmHash();                 ///< of mean, second moment and count of every pixel
+  /// The film with its named layers (film/exr_writer.hpp writes it).
+  Result<struct FilmImage> readFilm();
+  /// The picture as it would be published now.
+  Result<std::shared_ptr<const Frame>> resolveFrame();
+  const Scene& scene() const;
+
+ private:
+  struct Impl;
+  explicit Session(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> m_impl;
+};
+
+}  // namespace limn

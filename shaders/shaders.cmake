@@ -1,0 +1,1 @@
+# The list of shader modules. One line a module or variant.
