@@ -6,8 +6,9 @@ import pathlib
 import sys
 
 import scenes_cornell
+import scenes_demo
 
-REGISTRIES = (scenes_cornell,)
+REGISTRIES = (scenes_demo, scenes_cornell)
 SCENES = {name: make for module in REGISTRIES for name, make in module.SCENES.items()}
 ON_REQUEST = frozenset()
 
