@@ -8,9 +8,9 @@
 namespace limn {
 namespace {
 
-const Flag* findFlag(const CommandSpec& spec, const std::string& name) {
+const Flag* findFlag(const CommandSpec& spec, const std::string& dashedName) {
   for (const Flag& flag : spec.flags)
-    if (flag.name == name) return &flag;
+    if ("--" + flag.name == dashedName) return &flag;
   return nullptr;
 }
 
@@ -48,7 +48,7 @@ Result<Arguments> Arguments::parse(const CommandSpec& spec, std::span<const std:
       continue;
     }
     const size_t equals = word.find('=');
-    const Flag* flag = word.starts_with("--") ? findFlag(spec, word.substr(2, equals == word.npos ? equals : equals - 2)) : nullptr;
+    const Flag* flag = findFlag(spec, word.substr(0, equals));
     if (!flag) return usageError("unknown flag '" + word.substr(0, equals) + "'");
     std::vector<std::string>& values = arguments.m_values[flag->name];
     if (!values.empty() && !flag->repeated) return usageError("--" + flag->name + " is given twice");
@@ -58,7 +58,8 @@ Result<Arguments> Arguments::parse(const CommandSpec& spec, std::span<const std:
     } else if (equals != word.npos) {
       values.push_back(word.substr(equals + 1));
     } else {
-      if (i + 1 >= words.size() || words[i + 1].starts_with("--")) return usageError("--" + flag->name + " needs " + flag->value);
+      const bool present = i + 1 < words.size() && !words[i + 1].starts_with("--");
+      if (!present) return usageError("--" + flag->name + " needs " + flag->value);
       values.push_back(words[++i]);
     }
   }
@@ -97,8 +98,8 @@ Result<uint64_t> Arguments::integer(const std::string& flag, uint64_t fallback, 
   if (!has(flag)) return fallback;
   uint64_t value = 0;
   if (!parseInteger(text(flag), value) || value < least || value > most)
-    return usageError("--" + flag + " must be an integer from " + std::to_string(least) + " to " + std::to_string(most) +
-                      ", not '" + text(flag) + "'");
+    return usageError("--" + flag + " must be an integer from " + std::to_string(least) + " to " +
+                      std::to_string(most) + ", not '" + text(flag) + "'");
   return value;
 }
 

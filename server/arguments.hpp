@@ -17,9 +17,9 @@ enum ExitCode : int { kExitOk = 0, kExitFailed = 1, kExitUsage = 64, kExitDevice
 struct Flag {
   std::string name;              ///< "size", without the dashes
   std::string value;             ///< "WxH"; empty: a switch without a value
-  std::string help = {};          ///< one line
+  std::string help = {};         ///< one line
   bool repeated = false;         ///< may be given several times
-  std::string group = {};          ///< at most one flag of a group may be given; empty: none
+  std::string group = {};        ///< at most one flag of a group may be given; empty: none
   bool required = false;
 };
 
