@@ -1,0 +1,120 @@
+#include "renderer/visibility/bvh_build.hpp"
+
+#include <embree3/rtcore.h>
+
+#include <cmath>
+
+#include "renderer/base/check.hpp"
+
+namespace limn {
+namespace {
+
+// What Embree's callbacks make: a leaf (count > 0) or an inner node with two children. Lives in Embree's own allocator.
+struct RawNode {
+  RawNode* children[2];
+  Box box;
+  uint32_t first;
+  uint32_t count;
+};
+
+// Leaves list their boxes here; a RawNode holds a range of it.
+struct BuildState {
+  std::vector<uint32_t> items;
+};
+
+Box fromEmbree(const RTCBounds& b) {
+  return {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
+}
+
+RawNode* allocateNode(RTCThreadLocalAllocator allocator) {
+  return new (rtcThreadLocalAlloc(allocator, sizeof(RawNode), 16)) RawNode{};
+}
+
+void* createNode(RTCThreadLocalAllocator allocator, unsigned childCount, void*) {
+  LIMN_CHECK_EQ(childCount, 2u);
+  return allocateNode(allocator);
+}
+
+void setChildren(void* node, void** children, unsigned, void*) {
+  for (int i = 0; i < 2; ++i) static_cast<RawNode*>(node)->children[i] = static_cast<RawNode*>(children[i]);
+}
+
+// Called with the children's bounds after the children exist.
+void setBounds(void* node, const RTCBounds** bounds, unsigned, void*) {
+  for (int i = 0; i < 2; ++i) static_cast<RawNode*>(node)->children[i]->box = fromEmbree(*bounds[i]);
+}
+
+void* createLeaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count, void* user) {
+  auto& items = static_cast<BuildState*>(user)->items;
+  RawNode* leaf = allocateNode(allocator);
+  leaf->first = uint32_t(items.size());
+  leaf->count = uint32_t(count);
+  for (size_t i = 0; i < count; ++i) items.push_back(primitives[i].primID);
+  return leaf;
+}
+
+uint32_t flatten(const RawNode& raw, BvhTree& tree, const std::vector<uint32_t>& items) {
+  const uint32_t index = uint32_t(tree.nodes.size());
+  tree.nodes.push_back({raw.box, 0, 0, 0, raw.count});
+  if (raw.count > 0) {
+    tree.nodes[index].first = uint32_t(tree.items.size());
+    tree.items.insert(tree.items.end(), items.begin() + raw.first, items.begin() + raw.first + raw.count);
+    return index;
+  }
+  const uint32_t left = flatten(*raw.children[0], tree, items);
+  const uint32_t right = flatten(*raw.children[1], tree, items);
+  tree.nodes[index].left = left;
+  tree.nodes[index].right = right;
+  return index;
+}
+
+}  // namespace
+
+struct BvhBuilder::Embree {
+  RTCDevice device = rtcNewDevice("threads=1");
+  ~Embree() { rtcReleaseDevice(device); }
+};
+
+BvhBuilder::BvhBuilder() : m_embree(std::make_unique<Embree>()) { LIMN_CHECK(m_embree->device != nullptr); }
+BvhBuilder::~BvhBuilder() = default;
+BvhBuilder::BvhBuilder(BvhBuilder&&) noexcept = default;
+BvhBuilder& BvhBuilder::operator=(BvhBuilder&&) noexcept = default;
+
+BvhTree BvhBuilder::build(std::span<const Box> boxes, uint32_t maxLeafSize) const {
+  BvhTree tree;
+  if (boxes.empty()) return tree;
+
+  std::vector<RTCBuildPrimitive> primitives(boxes.size());
+  Box bounds;
+  for (size_t i = 0; i < boxes.size(); ++i) {
+    const Box& b = boxes[i];
+    primitives[i] = {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, uint32_t(i)};
+    bounds.add(b);
+  }
+
+  BuildState state;
+  RTCBVH bvh = rtcNewBVH(m_embree->device);
+  RTCBuildArguments arguments = rtcDefaultBuildArguments();
+  arguments.bvh = bvh;
+  arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
+  arguments.maxDepth = 64;
+  arguments.maxLeafSize = maxLeafSize;
+  arguments.primitives = primitives.data();
+  arguments.primitiveCount = primitives.size();
+  arguments.primitiveArrayCapacity = primitives.size();
+  arguments.createNode = createNode;
+  arguments.setNodeChildren = setChildren;
+  arguments.setNodeBounds = setBounds;
+  arguments.createLeaf = createLeaf;
+  arguments.userPtr = &state;
+  auto* root = static_cast<RawNode*>(rtcBuildBVH(&arguments));
+  LIMN_CHECK(root != nullptr);
+  root->box = bounds;
+  tree.nodes.reserve(2 * boxes.size());
+  tree.items.reserve(boxes.size());
+  flatten(*root, tree, state.items);
+  rtcReleaseBVH(bvh);
+  return tree;
+}
+
+}  // namespace limn

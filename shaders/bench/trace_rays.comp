@@ -1,0 +1,47 @@
+#version 460
+// Traces a buffer of rays, nothing else: for the benchmark and for the tests of shaders/lib/trace.glsl.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/shared/bvh_shared.h"
+
+layout(local_size_x = 64) in;
+layout(binding = 0) uniform BVH_NODE_SAMPLER bvhNodes;
+layout(binding = 1) uniform BVH_TRIANGLE_SAMPLER bvhTriangles;
+
+struct Ray {
+  vec3 originR;
+  float tMax;  // negative: no ray
+  vec3 dirR;
+  uint alphaState;
+};
+struct RayHit {
+  float t;
+  uint triangle;
+  vec2 barycentrics;
+};
+layout(binding = 2, scalar) readonly buffer Rays { Ray rays[]; };
+layout(binding = 3, scalar) writeonly buffer Hits { RayHit hits[]; };
+layout(push_constant) uniform Push { uint rayCount; };
+
+#ifdef LIMN_ALPHA
+// A checker in each triangle, so that the host can tell what must be seen; the state counts the questions.
+bool alphaAccepts(uint triangle, vec2 barycentrics, inout uint state) {
+  ++state;
+  return ((triangle ^ uint(barycentrics.x > 0.3)) & 1u) == 0u;
+}
+#endif
+#include "shaders/lib/trace.glsl"
+
+void main() {
+  uint index = gl_GlobalInvocationID.x;
+  if (index >= rayCount) return;
+  Ray ray = rays[index];
+  Hit hit = Hit(ray.tMax, kNoTriangle, vec2(0.0));
+  uint state = ray.alphaState;
+#ifdef BENCH_ANY
+  hit.triangle = ray.tMax >= 0.0 && traceAny(ray.originR, ray.dirR, ray.tMax, state) ? 0u : kNoTriangle;
+#else
+  if (ray.tMax >= 0.0) traceClosest(ray.originR, ray.dirR, ray.tMax, state, hit);
+#endif
+  hits[index] = RayHit(hit.t, hit.triangle, hit.barycentrics);
+}
