@@ -5,10 +5,12 @@ import argparse
 import pathlib
 import sys
 
+import scenes_analytic
 import scenes_cornell
 import scenes_demo
+import scenes_furnace
 
-REGISTRIES = (scenes_demo, scenes_cornell)
+REGISTRIES = (scenes_demo, scenes_cornell, scenes_furnace, scenes_analytic)
 SCENES = {name: make for module in REGISTRIES for name, make in module.SCENES.items()}
 ON_REQUEST = frozenset()
 

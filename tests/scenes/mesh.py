@@ -74,3 +74,14 @@ def merged(meshes):
     for mesh in meshes:
         out.append(mesh)
     return out
+
+
+def faceted(mesh):
+    """A copy with flat normals and no shared corners: what is seen is then exactly the polyhedron."""
+    out = Mesh()
+    for i in range(0, len(mesh.indices), 3):
+        corners = mesh.indices[i:i + 3]
+        a, b, c = (mesh.positions[k] for k in corners)
+        normal = vec.normalize(vec.cross(vec.sub(b, a), vec.sub(c, a)))
+        out.triangle(*[out.vertex(mesh.positions[k], normal, mesh.uvs[k]) for k in corners])
+    return out
