@@ -12,7 +12,7 @@ namespace {
 // What Embree's callbacks make: a leaf (count > 0) or an inner node with two children. Lives in Embree's own allocator.
 struct RawNode {
   RawNode* children[2];
-  Box box;
+  Box childBoxes[2];
   uint32_t first;
   uint32_t count;
 };
@@ -39,9 +39,8 @@ void setChildren(void* node, void** children, unsigned, void*) {
   for (int i = 0; i < 2; ++i) static_cast<RawNode*>(node)->children[i] = static_cast<RawNode*>(children[i]);
 }
 
-// Called with the children's bounds after the children exist.
 void setBounds(void* node, const RTCBounds** bounds, unsigned, void*) {
-  for (int i = 0; i < 2; ++i) static_cast<RawNode*>(node)->children[i]->box = fromEmbree(*bounds[i]);
+  for (int i = 0; i < 2; ++i) static_cast<RawNode*>(node)->childBoxes[i] = fromEmbree(*bounds[i]);
 }
 
 void* createLeaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count, void* user) {
@@ -53,16 +52,16 @@ void* createLeaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* pri
   return leaf;
 }
 
-uint32_t flatten(const RawNode& raw, BvhTree& tree, const std::vector<uint32_t>& items) {
+uint32_t flatten(const RawNode& raw, const Box& box, BvhTree& tree, const std::vector<uint32_t>& items) {
   const uint32_t index = uint32_t(tree.nodes.size());
-  tree.nodes.push_back({raw.box, 0, 0, 0, raw.count});
+  tree.nodes.push_back({box, 0, 0, 0, raw.count});
   if (raw.count > 0) {
     tree.nodes[index].first = uint32_t(tree.items.size());
     tree.items.insert(tree.items.end(), items.begin() + raw.first, items.begin() + raw.first + raw.count);
     return index;
   }
-  const uint32_t left = flatten(*raw.children[0], tree, items);
-  const uint32_t right = flatten(*raw.children[1], tree, items);
+  const uint32_t left = flatten(*raw.children[0], raw.childBoxes[0], tree, items);
+  const uint32_t right = flatten(*raw.children[1], raw.childBoxes[1], tree, items);
   tree.nodes[index].left = left;
   tree.nodes[index].right = right;
   return index;
@@ -109,10 +108,9 @@ BvhTree BvhBuilder::build(std::span<const Box> boxes, uint32_t maxLeafSize) cons
   arguments.userPtr = &state;
   auto* root = static_cast<RawNode*>(rtcBuildBVH(&arguments));
   LIMN_CHECK(root != nullptr);
-  root->box = bounds;
   tree.nodes.reserve(2 * boxes.size());
   tree.items.reserve(boxes.size());
-  flatten(*root, tree, state.items);
+  flatten(*root, bounds, tree, state.items);
   rtcReleaseBVH(bvh);
   return tree;
 }
