@@ -35,11 +35,11 @@ Result<void> checkLayers(const FilmImage& image) {
   return {};
 }
 
-/// String attributes that say something about the picture, not about how OIIO read the file.
+/// String attributes that say something about the picture, not about how it was stored.
 bool isMetadata(const OIIO::ParamValue& attribute) {
   const std::string_view name(attribute.name().c_str());
-  return attribute.type() == OIIO::TypeString && name != "compression" && !name.starts_with("oiio:") &&
-         !name.starts_with("openexr:");
+  return attribute.type() == OIIO::TypeString && name != "compression" && name != "DateTime" &&
+         !name.starts_with("oiio:") && !name.starts_with("openexr:");
 }
 
 }  // namespace
@@ -51,6 +51,7 @@ Result<std::vector<uint8_t>> encodeExr(const FilmImage& image) {
     for (const std::string& name : exrChannelNames(layer)) spec.channelnames.push_back(name);
   spec.nchannels = int(spec.channelnames.size());
   spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "");  // else the writer puts the clock in, and equal images get unequal bytes
   for (const auto& [key, value] : image.metadata) spec.attribute(key, value);
 
   const size_t pixels = size_t(image.width) * image.height, stride = spec.channelnames.size();
