@@ -2,37 +2,38 @@
 
 #include <embree3/rtcore.h>
 
-#include <cmath>
+#include <algorithm>
+#include <new>
 
 #include "renderer/base/check.hpp"
 
 namespace limn {
 namespace {
 
-// What Embree's callbacks make: a leaf (count > 0) or an inner node with two children. Lives in Embree's own allocator.
+// What Embree's callbacks make, in Embree's own allocator: an inner node with two children, or a leaf (count > 0) with the
+// indices of its boxes right behind it. The callbacks share nothing, so Embree may call them from any thread.
 struct RawNode {
   RawNode* children[2];
   Box childBoxes[2];
-  uint32_t first;
   uint32_t count;
-};
 
-// Leaves list their boxes here; a RawNode holds a range of it.
-struct BuildState {
-  std::vector<uint32_t> items;
+  uint32_t* items() { return reinterpret_cast<uint32_t*>(this + 1); }
 };
 
 Box fromEmbree(const RTCBounds& b) {
   return {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
 }
 
-RawNode* allocateNode(RTCThreadLocalAllocator allocator) {
-  return new (rtcThreadLocalAlloc(allocator, sizeof(RawNode), 16)) RawNode{};
+RawNode* allocateNode(RTCThreadLocalAllocator allocator, size_t itemCount) {
+  void* memory = rtcThreadLocalAlloc(allocator, sizeof(RawNode) + itemCount * sizeof(uint32_t), 16);
+  auto* node = new (memory) RawNode{};
+  node->count = uint32_t(itemCount);
+  return node;
 }
 
 void* createNode(RTCThreadLocalAllocator allocator, unsigned childCount, void*) {
   LIMN_CHECK_EQ(childCount, 2u);
-  return allocateNode(allocator);
+  return allocateNode(allocator, 0);
 }
 
 void setChildren(void* node, void** children, unsigned, void*) {
@@ -43,25 +44,23 @@ void setBounds(void* node, const RTCBounds** bounds, unsigned, void*) {
   for (int i = 0; i < 2; ++i) static_cast<RawNode*>(node)->childBoxes[i] = fromEmbree(*bounds[i]);
 }
 
-void* createLeaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count, void* user) {
-  auto& items = static_cast<BuildState*>(user)->items;
-  RawNode* leaf = allocateNode(allocator);
-  leaf->first = uint32_t(items.size());
-  leaf->count = uint32_t(count);
-  for (size_t i = 0; i < count; ++i) items.push_back(primitives[i].primID);
+void* createLeaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count, void*) {
+  RawNode* leaf = allocateNode(allocator, count);
+  std::transform(primitives, primitives + count, leaf->items(), [](const RTCBuildPrimitive& p) { return p.primID; });
+  std::sort(leaf->items(), leaf->items() + count);
   return leaf;
 }
 
-uint32_t flatten(const RawNode& raw, const Box& box, BvhTree& tree, const std::vector<uint32_t>& items) {
+uint32_t flatten(RawNode& raw, const Box& box, BvhTree& tree) {
   const uint32_t index = uint32_t(tree.nodes.size());
   tree.nodes.push_back({box, 0, 0, 0, raw.count});
   if (raw.count > 0) {
     tree.nodes[index].first = uint32_t(tree.items.size());
-    tree.items.insert(tree.items.end(), items.begin() + raw.first, items.begin() + raw.first + raw.count);
+    tree.items.insert(tree.items.end(), raw.items(), raw.items() + raw.count);
     return index;
   }
-  const uint32_t left = flatten(*raw.children[0], raw.childBoxes[0], tree, items);
-  const uint32_t right = flatten(*raw.children[1], raw.childBoxes[1], tree, items);
+  const uint32_t left = flatten(*raw.children[0], raw.childBoxes[0], tree);
+  const uint32_t right = flatten(*raw.children[1], raw.childBoxes[1], tree);
   tree.nodes[index].left = left;
   tree.nodes[index].right = right;
   return index;
@@ -91,7 +90,6 @@ BvhTree BvhBuilder::build(std::span<const Box> boxes, uint32_t maxLeafSize) cons
     bounds.add(b);
   }
 
-  BuildState state;
   RTCBVH bvh = rtcNewBVH(m_embree->device);
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
   arguments.bvh = bvh;
@@ -105,12 +103,11 @@ BvhTree BvhBuilder::build(std::span<const Box> boxes, uint32_t maxLeafSize) cons
   arguments.setNodeChildren = setChildren;
   arguments.setNodeBounds = setBounds;
   arguments.createLeaf = createLeaf;
-  arguments.userPtr = &state;
   auto* root = static_cast<RawNode*>(rtcBuildBVH(&arguments));
   LIMN_CHECK(root != nullptr);
   tree.nodes.reserve(2 * boxes.size());
   tree.items.reserve(boxes.size());
-  flatten(*root, bounds, tree, state.items);
+  flatten(*root, bounds, tree);
   rtcReleaseBVH(bvh);
   return tree;
 }
