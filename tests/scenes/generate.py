@@ -9,11 +9,13 @@ import scenes_analytic
 import scenes_cornell
 import scenes_demo
 import scenes_furnace
+import scenes_hard
 import scenes_large
 import scenes_places
 import scenes_plant
+import scenes_textures
 
-REGISTRIES = (scenes_demo, scenes_cornell, scenes_furnace, scenes_analytic, scenes_places, scenes_plant, scenes_large)
+REGISTRIES = (scenes_demo, scenes_cornell, scenes_furnace, scenes_analytic, scenes_places, scenes_plant, scenes_textures, scenes_hard, scenes_large)
 SCENES = {name: make for module in REGISTRIES for name, make in module.SCENES.items()}
 ON_REQUEST = frozenset(scenes_large.SCENES)
 
