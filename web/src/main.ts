@@ -1,0 +1,206 @@
+/** Puts the house together: stream worker, model, camera, panels. */
+import { bindControls } from './camera/controls';
+import { CameraRig } from './camera/rig';
+import { boundsOf, poseFromView, poseOfCamera, viewFromPose } from './camera/scene_pose';
+import type { ConnectionState, FrameReport, Outgoing } from './channel';
+import { nowMs } from './clock';
+import { Bar } from './panels/bar';
+import { Inspector } from './panels/inspector';
+import { Ledger } from './panels/ledger';
+import { nameOf } from './panels/names';
+import { RenderPanel } from './panels/render_panel';
+import { bindSceneName, ScenePanel } from './panels/scene_panel';
+import { Stage } from './panels/stage';
+import { StatsPanel } from './panels/stats_panel';
+import { bindTabs } from './panels/tabs';
+import type { Edit, FrameHeader, Picked, SceneMessage, ServerMessage } from './protocol/messages.gen';
+import { EditDesk, type Outcome } from './state/edit_desk';
+import { Model } from './state/model';
+import { Statistics } from './state/statistics';
+import { StreamLink } from './stream_link';
+import { makeTestHook, remember } from './test_hook';
+import { Announcer } from './ui/announcer';
+import { setText } from './ui/dom';
+import { formatNumber } from './ui/format';
+
+const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
+const requestFrame = (callback: (now: number) => void): void => void requestAnimationFrame(callback);
+// Requests that are no edits travel under this ticket; nobody waits for their seq.
+const kNoTicket = 0;
+
+const model = new Model();
+const statistics = new Statistics();
+const announcer = new Announcer((text) => setText(byId('announcer'), text));
+const ledger = new Ledger(byId('ledger'));
+const stage = new Stage(byId('stage'), byId('stale'), byId('marker'), model);
+const desk = new EditDesk({ post: (ticket, message) => link.send(ticket, message), requestFrame, now: nowMs, onOutcome });
+const rig = new CameraRig({
+  send: (pose) => desk.camera(viewFromPose(pose)),
+  requestFrame,
+  reducedMotion: () => matchMedia('(prefers-reduced-motion: reduce)').matches,
+});
+const link = new StreamLink(byId<HTMLCanvasElement>('picture'), socketUrl(), tokenOfAddress(), {
+  onState, onMessage, onFrame, onFile, onFault,
+  onSent: (ticket, seq, reason) => desk.onSent(ticket, seq, reason),
+});
+const hook = makeTestHook(model, statistics, rig, link);
+window.limn = hook;
+const bar = new Bar(byId('connection'), byId('phase'), model, () => link.retry());
+
+bindTabs(byId('tabs'), document.body);
+bindSceneName(byId('scene-name'), model);
+new ScenePanel(byId('scene'), model, (uri) => request({ op: 'load', uri }), useCamera);
+new StatsPanel(byId('stats'), model, statistics);
+new Inspector(byId('inspector'), model, edit);
+new RenderPanel(byId('render'), model, {
+  edit,
+  setFieldOfView: (yfov) => whenConnected(() => rig.setFieldOfView(yfov)),
+  saveExr: () => request({ op: 'save' }),
+  stageSize: () => ({ width: stage.element.clientWidth * devicePixelRatio, height: stage.element.clientHeight * devicePixelRatio }),
+});
+bindControls(stage.element, {
+  pictureHeight: () => stage.shown().height,
+  orbit: (yaw, pitch) => whenConnected(() => rig.orbit(yaw, pitch)),
+  pan: (right, up) => whenConnected(() => rig.pan(right, up)),
+  dolly: (factor) => whenConnected(() => rig.dolly(factor)),
+  frame: () => whenConnected(() => rig.frame()),
+  centerPicked: () => whenConnected(() => rig.centerPicked()),
+  reset: () => whenConnected(() => rig.reset()),
+  click: pick,
+});
+model.on('scene', adoptScene);
+
+/** The socket stands beside the page, whatever path the server is mounted on. */
+function socketUrl(): string {
+  const url = new URL('ws', document.baseURI);
+  url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
+  url.search = url.hash = '';
+  return url.href;
+}
+
+/** A token given as #token=... stays out of requests and server logs. */
+function tokenOfAddress(): string | null {
+  return new URLSearchParams(location.hash.slice(1)).get('token');
+}
+
+/** An edit by a panel: shown at once, sent with the next display frame. */
+function edit(label: string, change: Edit): void {
+  whenConnected(() => {
+    model.applyLocally(change);
+    desk.set(label, change);
+  });
+}
+
+function request(message: Outgoing): void {
+  whenConnected(() => link.send(kNoTicket, message));
+}
+
+/** Without a connection nothing is changed here either, and the person is told. */
+function whenConnected(action: () => void): void {
+  if (model.connected()) {
+    action();
+    return;
+  }
+  ledger.say('Not sent: there is no connection to the server', true);
+  announcer.say('Not sent: there is no connection to the server');
+  if (model.scene) model.setScene(model.scene);
+}
+
+function pick(clientX: number, clientY: number): void {
+  const pixel = stage.pixelAt(clientX, clientY);
+  if (!pixel) return;
+  stage.mark(pixel);
+  request({ op: 'pick', ...pixel });
+}
+
+function useCamera(index: number): void {
+  const pose = model.scene ? poseOfCamera(model.scene, index) : null;
+  if (pose) whenConnected(() => rig.goTo(pose));
+}
+
+function adoptScene(scene: SceneMessage): void {
+  if (scene.cause === 'loaded') rig.forgetHome();
+  if (!rig.busy() && !desk.cameraPending()) rig.adopt(poseFromView(scene.view), boundsOf(scene));
+}
+
+function onState(state: ConnectionState): void {
+  const was = model.connection.kind;
+  if (was === 'connected' && state.kind !== 'connected') desk.onDisconnected();
+  if (state.kind === 'connected') statistics.onConnected();
+  model.setConnection(state);
+  if (state.kind !== was) announcer.say('reason' in state ? `${state.kind}: ${state.reason}` : state.kind);
+}
+
+function onMessage(message: ServerMessage): void {
+  switch (message.op) {
+    case 'hello': model.setHello(message); break;
+    case 'scene': model.setScene(message); break;
+    case 'status': model.setStatus(message); break;
+    case 'ack': remember(hook.acks, message); desk.onAck(message); break;
+    case 'picked': remember(hook.picks, message); onPicked(message); break;
+    case 'loaded': ledger.say(`Loaded in ${formatNumber(message.seconds, 3)} s`); break;
+    case 'bye': ledger.say(`The server says good-bye: ${message.reason}`, true); break;
+    case 'error':
+      if (!desk.onError(message)) ledger.say(`${message.message}${message.place ? ` (${message.place})` : ''}`, true);
+      break;
+    default: break;
+  }
+}
+
+function onPicked(picked: Picked): void {
+  if (!picked.hit || picked.node === undefined) {
+    rig.setPivot(null);
+    model.select({ kind: 'environment' });
+    ledger.say('Picked: nothing but the environment');
+    return;
+  }
+  rig.setPivot(picked.posW ?? null);
+  const material = picked.material === undefined ? {} : { material: picked.material };
+  model.select({ kind: 'node', node: picked.node, ...material });
+  const node = nameOf(model.scene?.nodes[picked.node]?.name, 'Node', picked.node);
+  const made = picked.material === undefined ? 'the default material' : nameOf(model.scene?.materials[picked.material]?.name, 'Material', picked.material);
+  ledger.say(`Picked: ${node}, made of ${made}`);
+  announcer.say(`${node}, made of ${made}`);
+}
+
+function onOutcome(outcome: Outcome): void {
+  remember(hook.outcomes, outcome);
+  ledger.showOutcome(outcome);
+  if (outcome.kind === 'applied') {
+    // A technique brings its own parameters, which only the server knows.
+    if (outcome.latencyMs !== undefined && outcome.label === 'Technique') request({ op: 'describe' });
+    return;
+  }
+  announcer.say(`${outcome.label} failed`);
+  // What was shown in advance is not so; the server's own description puts it right.
+  if (model.connected()) request({ op: 'describe' });
+}
+
+function onFrame(frame: FrameReport): void {
+  const before = statistics.last?.header.phase;
+  statistics.onFrame(frame);
+  if (frame.dropped) return;
+  const { header } = frame;
+  stage.setPictureSize(header.fullWidth, header.fullHeight);
+  rig.aspect = stage.aspect();
+  bar.showFrame(frame);
+  statistics.onLatencies(desk.onFrame(frame));
+  const error = Number.isFinite(header.estimatedError) ? `, error ${formatNumber(header.estimatedError, 2)}` : '';
+  ledger.showFigures(`${formatNumber(header.meanSamples, 3)} samples${error}`);
+  if (header.phase === 'converged' && before !== 'converged') announcer.say('The picture has converged');
+  hook.frame = frame;
+}
+
+function onFile(header: FrameHeader, bytes: Uint8Array): void {
+  const url = URL.createObjectURL(new Blob([bytes as Uint8Array<ArrayBuffer>], { type: 'application/octet-stream' }));
+  const anchor = document.createElement('a');
+  anchor.href = url;
+  anchor.download = `${(model.scene?.name ?? 'limn').replace(/\.[^.]*$/, '')}.${header.encoding}`;
+  anchor.click();
+  URL.revokeObjectURL(url);
+}
+
+function onFault(text: string): void {
+  remember(hook.faults, text);
+  ledger.say(text, true);
+}

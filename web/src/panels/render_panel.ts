@@ -1,0 +1,119 @@
+import type { Edit, EditableField, SceneMessage, ServerHello } from '../protocol/messages.gen';
+import type { Model } from '../state/model';
+import { h, setText } from '../ui/dom';
+import { numberField, selectField, type Field } from '../ui/fields';
+import { titleFromName } from '../ui/format';
+import { announcedField, parameterField, type WireValue } from './announced_fields';
+
+const kDegrees = 180 / Math.PI;
+const kSides = [256, 384, 512, 768, 1024];
+
+export interface RenderActions {
+  edit(label: string, edit: Edit): void;
+  setFieldOfView(yfov: number): void;
+  saveExr(): void;
+  /** Size of the stage in device pixels. */
+  stageSize(): { width: number; height: number };
+}
+
+/** How the picture is made and shown: technique and its parameters, exposure and tone map, lens, size, and saving. */
+export class RenderPanel {
+  private resolve = new Map<string, Field<WireValue>>();
+  private technique: Field<string> | null = null;
+  private parameters = new Map<string, Field<number>>();
+  private size: Field<string> | null = null;
+  private readonly fieldOfView: Field<number>;
+  private readonly about = h('p', { class: 'facts' });
+  private readonly knobs = h('div', { class: 'knobs' });
+  private knobsOf = '';
+
+  constructor(private readonly root: HTMLElement, private readonly model: Model, private readonly actions: RenderActions) {
+    this.fieldOfView = numberField({
+      label: 'Field of view', unit: '°', minimum: 1, maximum: 170, softMinimum: 10, softMaximum: 100,
+      onInput: (degrees) => actions.setFieldOfView(degrees / kDegrees),
+    });
+    model.on('hello', (hello) => this.build(hello));
+    model.on('scene', (scene) => this.refresh(scene));
+    model.on('edited', () => model.scene && this.refresh(model.scene));
+  }
+
+  private build(hello: ServerHello): void {
+    const resolveFields = hello.editable.find((e) => e.target === 'resolve')?.fields ?? [];
+    this.resolve.clear();
+    const shown = resolveFields.map((field) => this.resolveField(field, hello));
+    this.technique = selectField('Technique', hello.techniques.map((t) => ({ value: t.name, title: t.title, description: t.description })),
+      (name) => this.actions.edit('Technique', { target: 'technique', technique: name }));
+    this.size = selectField('Picture size', [], (value) => this.setSize(value));
+    this.knobsOf = '';
+    this.root.replaceChildren(
+      h('section', { class: 'sheet', 'aria-label': 'Display' }, h('h3', {}, 'Display'), ...shown, this.fieldOfView.element, this.size.element),
+      h('section', { class: 'sheet', 'aria-label': 'Technique' }, h('h3', {}, 'Technique'), this.technique.element, this.about, this.knobs),
+      h('div', { class: 'buttons' }, h('button', { onClick: () => this.actions.saveExr() }, 'Save EXR')));
+    if (this.model.scene) this.refresh(this.model.scene);
+  }
+
+  private resolveField(field: EditableField, hello: ServerHello): HTMLElement | null {
+    const choices = field.name === 'toneMap' ? { choices: [...hello.toneMaps] } : {};
+    const input = announcedField({ ...field, ...choices }, (value) =>
+      this.actions.edit(titleFromName(field.name), { target: 'resolve', [field.name]: value } as Edit));
+    if (!input) return null;
+    this.resolve.set(field.name, input);
+    return input.element;
+  }
+
+  private refresh(scene: SceneMessage): void {
+    for (const [name, field] of this.resolve) {
+      const value = (scene.resolve as unknown as Record<string, WireValue>)[name];
+      if (value !== undefined) field.set(value);
+    }
+    if (scene.view.yfov !== undefined) this.fieldOfView.set(Number((scene.view.yfov * kDegrees).toFixed(3)));
+    this.fieldOfView.element.hidden = scene.view.perspective === false;
+    this.showSizes(scene);
+    this.showTechnique(scene);
+  }
+
+  private showTechnique(scene: SceneMessage): void {
+    this.technique?.set(scene.technique);
+    const info = this.model.hello?.techniques.find((t) => t.name === scene.technique);
+    setText(this.about, info ? `${info.description} ${info.biased ? 'Biased.' : 'Unbiased.'}` : '');
+    if (info && this.knobsOf !== info.name) {
+      this.knobsOf = info.name;
+      this.parameters.clear();
+      this.knobs.replaceChildren(...info.parameters.map((parameter) => {
+        const field = parameterField(parameter, (value) =>
+          this.actions.edit(titleFromName(parameter.name), { target: 'technique', parameters: { [parameter.name]: value } }));
+        field.set(parameter.default);
+        this.parameters.set(parameter.name, field);
+        return field.element;
+      }));
+    }
+    for (const [name, field] of this.parameters) {
+      const value = scene.parameters[name];
+      if (value !== undefined) field.set(value);
+    }
+  }
+
+  private showSizes(scene: SceneMessage): void {
+    const most = this.model.hello?.limits.maxImageSide ?? 1024;
+    const now = `${scene.width}x${scene.height}`;
+    const sizes = kSides.filter((side) => side <= most).map((side) => `${side}x${side}`);
+    const select = this.size?.element.querySelector('select');
+    if (!select || select.dataset['now'] === now) return;
+    select.dataset['now'] = now;
+    const option = (value: string, title: string) => h('option', { value }, title);
+    const pixels = (value: string) => value.replace('x', ' × ');
+    select.replaceChildren(
+      ...[...new Set([now, ...sizes])].map((value) => option(value, pixels(value))),
+      option('half', 'Half the window'), option('window', 'The whole window'));
+    select.value = now;
+  }
+
+  private setSize(value: string): void {
+    const most = this.model.hello?.limits.maxImageSide ?? 1024;
+    const stage = this.actions.stageSize();
+    const share = value === 'half' ? 0.5 : 1;
+    const [width = 512, height = 512] = /^\d/.test(value) ? value.split('x').map(Number) : [stage.width * share, stage.height * share];
+    const side = (pixels: number) => Math.min(most, Math.max(16, Math.round(pixels)));
+    this.actions.edit('Picture size', { target: 'image', width: side(width), height: side(height) });
+  }
+}

@@ -1,0 +1,94 @@
+import type { FrameHeader, ServerHello, Status } from '../protocol/messages.gen';
+import type { Model } from '../state/model';
+import type { Statistics } from '../state/statistics';
+import { nowMs } from '../clock';
+import { h, setText } from '../ui/dom';
+import { formatBytes, formatCount, formatMilliseconds, formatNumber } from '../ui/format';
+import { ErrorPlot } from '../ui/plot';
+
+const kRows = [
+  'Samples per pixel', 'Steps', 'Pixels gathered', 'Estimated error', 'Edit to pixels', 'Frames', 'Received', 'Frames left out',
+  'Frame', 'Rays', 'Discarded samples', 'Device',
+] as const;
+type Row = (typeof kRows)[number];
+
+/** Figures of the picture and of the way that it came, redrawn at most four times a second. */
+export class StatsPanel {
+  private readonly values = new Map<Row, HTMLElement>();
+  private readonly plot = new ErrorPlot();
+  private readonly stages = h('div', { class: 'stages' });
+  private readonly passes = h('p', { class: 'facts' });
+  private readonly memory = h('p', { class: 'facts' });
+
+  constructor(root: HTMLElement, private readonly model: Model, private readonly statistics: Statistics) {
+    const list = h('dl', { class: 'figures' });
+    for (const name of kRows) {
+      const value = h('dd', {}, '–');
+      this.values.set(name, value);
+      list.append(h('div', {}, h('dt', {}, name), value));
+    }
+    root.append(
+      h('h3', {}, 'Error over time'), this.plot.element, list,
+      h('details', { class: 'more', open: true }, h('summary', {}, 'Where the time went'), this.stages, this.passes, this.memory));
+    setInterval(() => this.refresh(), 250);
+  }
+
+  private refresh(): void {
+    const { hello, status } = this.model;
+    const header = this.statistics.last?.header;
+    if (header) this.showPicture(header);
+    this.showTransport(header);
+    if (status) this.showStatus(status);
+    if (header && hello) this.showStages(header, hello);
+    if (hello) this.set('Device', hello.device);
+    this.plot.show(this.statistics.errorPoints);
+  }
+
+  private set(row: Row, text: string): void {
+    const element = this.values.get(row);
+    if (element) setText(element, text);
+  }
+
+  private showPicture(header: FrameHeader): void {
+    this.set('Samples per pixel', formatNumber(header.meanSamples, 4));
+    this.set('Steps', formatCount(header.steps));
+    this.set('Pixels gathered', `${formatNumber(header.gatheredShare * 100, 3)} %`);
+    const interval = Number.isFinite(header.errorHigh) ? ` (${formatNumber(header.errorLow, 2)} … ${formatNumber(header.errorHigh, 2)})` : '';
+    this.set('Estimated error', Number.isFinite(header.estimatedError) ? formatNumber(header.estimatedError, 3) + interval : 'not known yet');
+  }
+
+  private showTransport(header: FrameHeader | undefined): void {
+    const s = this.statistics;
+    const at = nowMs();
+    const [median, p95] = [s.latencyQuantile(0.5), s.latencyQuantile(0.95)];
+    this.set('Edit to pixels', Number.isFinite(median)
+      ? `${formatMilliseconds(s.lastLatency())} (median ${formatMilliseconds(median)}, p95 ${formatMilliseconds(p95)})` : '–');
+    this.set('Frames', `${formatNumber(s.framesPerSecond(at), 3)} /s, ${formatCount(s.presented)} shown`);
+    this.set('Received', `${formatBytes(s.bytesPerSecond(at))}/s, ${formatBytes(s.bytes)} in all`);
+    this.set('Frames left out', `${formatCount(header?.replaced ?? 0)} by the server, ${formatCount(s.dropped)} here`);
+    if (!header || !s.last) return;
+    const how = header.quality > 0 ? `${header.encoding} q${header.quality}` : header.encoding;
+    const divided = header.imageWidth < header.width ? ` from ${header.imageWidth} × ${header.imageHeight}` : '';
+    this.set('Frame', `${header.fullWidth} × ${header.fullHeight}${divided}, ${how}, ${formatBytes(s.last.bytes)}`);
+  }
+
+  private showStatus(status: Status): void {
+    this.set('Rays', status.idle ? 'at rest' : `${formatNumber(status.raysPerSecond / 1e6, 3)} M/s`);
+    this.set('Discarded samples', formatCount(status.discardedSamples));
+    const out = status.leftOut.length > 0 ? `; left out: ${status.leftOut.join(', ')}` : '';
+    setText(this.passes, status.ran.length > 0 ? `Ran: ${status.ran.join(', ')}${out}` : '');
+    const memory = Object.entries(status.memory).map(([owner, bytes]) => `${owner} ${formatBytes(bytes)}`);
+    setText(this.memory, memory.length > 0 ? `Memory: ${memory.join(', ')}` : '');
+  }
+
+  private showStages(header: FrameHeader, hello: ServerHello): void {
+    const times: [string, number][] = hello.stages.slice(0, header.stageCount).map((name, i) => [name, header.stageMs[i] ?? 0]);
+    times.push(['encode', header.encodeMs], ['decode', this.statistics.last?.decodeMs ?? 0]);
+    const longest = Math.max(...times.map(([, ms]) => ms), 1e-6);
+    this.stages.replaceChildren(...times.map(([name, ms]) => {
+      const bar = h('span', { class: 'bar' });
+      bar.style.width = `${(100 * ms) / longest}%`;
+      return h('div', { class: 'stage-row' }, h('span', { class: 'name' }, name), h('span', { class: 'track' }, bar), h('span', { class: 'ms' }, formatMilliseconds(ms)));
+    }));
+  }
+}

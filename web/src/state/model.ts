@@ -1,0 +1,125 @@
+import type { Edit, SceneMessage, ServerHello, Status } from '../protocol/messages.gen';
+import type { ConnectionState } from '../channel';
+
+/** What the panels show in detail. */
+export type Selection =
+  | { kind: 'nothing' }
+  | { kind: 'node'; node: number; material?: number }
+  | { kind: 'material'; material: number }
+  | { kind: 'light'; light: number }
+  | { kind: 'environment' };
+
+interface Events {
+  hello: ServerHello;
+  scene: SceneMessage;
+  /** A value was edited here; the structure of the scene is as before. */
+  edited: Edit;
+  status: Status;
+  selection: Selection;
+  connection: ConnectionState;
+}
+
+type Listener<T> = (value: T) => void;
+
+/** The page's copy of the server's truth, and who wants to know about it. */
+export class Model {
+  hello: ServerHello | null = null;
+  scene: SceneMessage | null = null;
+  status: Status | null = null;
+  connection: ConnectionState = { kind: 'connecting' };
+  selection: Selection = { kind: 'nothing' };
+  private listeners: { [K in keyof Events]?: Listener<Events[K]>[] } = {};
+
+  on<K extends keyof Events>(event: K, listener: Listener<Events[K]>): void {
+    const list: Listener<Events[K]>[] = (this.listeners[event] as Listener<Events[K]>[] | undefined) ?? [];
+    list.push(listener);
+    Object.assign(this.listeners, { [event]: list });
+  }
+
+  setHello(hello: ServerHello): void {
+    this.hello = hello;
+    this.emit('hello', hello);
+  }
+
+  setScene(scene: SceneMessage): void {
+    const other = this.scene?.name !== scene.name || scene.cause === 'loaded';
+    this.scene = scene;
+    if (other || !selectionExists(scene, this.selection)) this.select({ kind: 'nothing' });
+    this.emit('scene', scene);
+  }
+
+  setStatus(status: Status): void {
+    this.status = status;
+    this.emit('status', status);
+  }
+
+  setConnection(state: ConnectionState): void {
+    this.connection = state;
+    this.emit('connection', state);
+  }
+
+  connected(): boolean {
+    return this.connection.kind === 'connected' && this.scene !== null;
+  }
+
+  select(selection: Selection): void {
+    this.selection = selection;
+    this.emit('selection', selection);
+  }
+
+  /** Shows an edit at once; should the server refuse it, its next scene message puts the truth back. */
+  applyLocally(edit: Edit): void {
+    if (!this.scene) return;
+    this.scene = withEdit(this.scene, edit);
+    this.emit('edited', edit);
+  }
+
+  private emit<K extends keyof Events>(event: K, value: Events[K]): void {
+    (this.listeners[event] as Listener<Events[K]>[] | undefined)?.forEach((listener) => listener(value));
+  }
+}
+
+function selectionExists(scene: SceneMessage, selection: Selection): boolean {
+  switch (selection.kind) {
+    case 'node': return selection.node < scene.nodes.length && (selection.material ?? 0) < Math.max(1, scene.materials.length);
+    case 'material': return selection.material < scene.materials.length;
+    case 'light': return selection.light < scene.lights.length;
+    default: return true;
+  }
+}
+
+const replaceAt = <T>(list: readonly T[], index: number, change: Partial<T>): T[] =>
+  list.map((item, i) => (i === index ? { ...item, ...change } : item));
+
+/** The scene with one edit applied. Pure. */
+export function withEdit(scene: SceneMessage, edit: Edit): SceneMessage {
+  switch (edit.target) {
+    case 'material': {
+      const { target: _, material, ...fields } = edit;
+      return { ...scene, materials: replaceAt(scene.materials, material, fields) };
+    }
+    case 'light': {
+      const { target: _, light, ...fields } = edit;
+      return { ...scene, lights: replaceAt(scene.lights, light, fields) };
+    }
+    case 'node': {
+      const { target: _, node, ...fields } = edit;
+      return { ...scene, nodes: replaceAt(scene.nodes, node, fields) };
+    }
+    case 'environment': {
+      const { target: _, ...fields } = edit;
+      return { ...scene, environment: { ...scene.environment, ...fields } };
+    }
+    case 'camera': return { ...scene, view: { ...scene.view, ...edit.view } };
+    case 'resolve': {
+      const { target: _, ...fields } = edit;
+      return { ...scene, resolve: { ...scene.resolve, ...fields } };
+    }
+    case 'technique': return {
+      ...scene,
+      technique: edit.technique ?? scene.technique,
+      parameters: { ...scene.parameters, ...edit.parameters },
+    };
+    case 'image': return { ...scene, width: edit.width, height: edit.height };
+  }
+}

@@ -1,0 +1,77 @@
+import type { ConnectionState, FrameReport, Outgoing, PixelHash, ToPage, ToWorker } from './channel';
+import type { FrameHeader, ServerMessage } from './protocol/messages.gen';
+
+export interface LinkHooks {
+  onState(state: ConnectionState): void;
+  onMessage(message: ServerMessage): void;
+  onSent(ticket: number, seq: number | null, reason: string): void;
+  onFrame(frame: FrameReport): void;
+  onFile(header: FrameHeader, bytes: Uint8Array): void;
+  onFault(text: string): void;
+}
+
+/** The page's end of the stream worker. */
+export class StreamLink {
+  private readonly worker: Worker;
+  private readonly answers = new Map<number, (answer: never) => void>();
+  private nextQuestion = 1;
+
+  constructor(canvas: HTMLCanvasElement, url: string, token: string | null, private readonly hooks: LinkHooks) {
+    this.worker = new Worker(new URL('./worker/stream_worker.ts', import.meta.url), { type: 'module', name: 'limn stream' });
+    this.worker.onmessage = ({ data }: MessageEvent<ToPage>) => this.receive(data);
+    this.worker.onerror = (event) => hooks.onFault(`the stream worker failed: ${event.message}`);
+    const offscreen = canvas.transferControlToOffscreen();
+    this.post({ type: 'start', canvas: offscreen, url, token, client: 'limn-web 0.1' }, [offscreen]);
+    document.addEventListener('visibilitychange', () => this.post({ type: 'hidden', hidden: document.hidden }));
+    window.addEventListener('online', () => this.retry());
+  }
+
+  send(ticket: number, message: Outgoing): void {
+    this.post({ type: 'send', ticket, message });
+  }
+
+  /** Tries to connect now instead of later. */
+  retry(): void {
+    this.post({ type: 'retry' });
+  }
+
+  /** Test hook. */
+  hash(): Promise<PixelHash> {
+    return this.ask((ticket) => ({ type: 'hash', ticket }));
+  }
+
+  /** Test hook. */
+  pixel(x: number, y: number): Promise<[number, number, number, number]> {
+    return this.ask((ticket) => ({ type: 'pixel', ticket, x, y }));
+  }
+
+  private ask<T>(question: (ticket: number) => ToWorker): Promise<T> {
+    const ticket = this.nextQuestion++;
+    return new Promise<T>((resolve) => {
+      this.answers.set(ticket, resolve as (answer: never) => void);
+      this.post(question(ticket));
+    });
+  }
+
+  private answer(ticket: number, value: unknown): void {
+    this.answers.get(ticket)?.(value as never);
+    this.answers.delete(ticket);
+  }
+
+  private post(message: ToWorker, transfer: Transferable[] = []): void {
+    this.worker.postMessage(message, transfer);
+  }
+
+  private receive(data: ToPage): void {
+    switch (data.type) {
+      case 'state': this.hooks.onState(data.state); break;
+      case 'message': this.hooks.onMessage(data.message); break;
+      case 'sent': this.hooks.onSent(data.ticket, data.seq, data.reason ?? ''); break;
+      case 'frame': this.hooks.onFrame(data.frame); break;
+      case 'file': this.hooks.onFile(data.header, data.bytes); break;
+      case 'fault': this.hooks.onFault(data.text); break;
+      case 'hash': this.answer(data.ticket, data.hash); break;
+      case 'pixel': this.answer(data.ticket, data.rgba); break;
+    }
+  }
+}

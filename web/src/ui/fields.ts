@@ -1,0 +1,253 @@
+import { hexFromLinear, linearFromHex, splitStrength } from '../math/color';
+import type { Vec3 } from '../math/vec3';
+import { h, uniqueId } from './dom';
+import { formatNumber } from './format';
+
+/** A labelled input that shows the server's value and tells about the person's edits. */
+export interface Field<T> {
+  readonly element: HTMLElement;
+  /** Shows `value`, unless the person is just typing here. */
+  set(value: T): void;
+}
+
+export interface NumberOptions {
+  label: string;
+  unit?: string | undefined;
+  minimum?: number | undefined;
+  maximum?: number | undefined;
+  /** Where the slider begins and ends, should that be narrower than what may be typed. */
+  softMinimum?: number | undefined;
+  softMaximum?: number | undefined;
+  integer?: boolean;
+  /** Slider positions follow the logarithm; for ranges over many decades. */
+  logarithmic?: boolean;
+  slider?: boolean;
+  description?: string | undefined;
+  onInput(value: number): void;
+}
+
+const kSliderSteps = 1000;
+const isBusy = (input: HTMLInputElement): boolean => document.activeElement === input && input.dataset['dirty'] === 'true';
+
+function labelText(label: string, unit?: string | undefined): HTMLElement {
+  const shown = unit && unit !== '1' ? h('span', { class: 'unit' }, ` ${unit}`) : null;
+  return h('span', { class: 'name' }, label, shown);
+}
+
+/** Reads a typed number; null when it is not one or lies outside the range. */
+function parseTyped(text: string, options: NumberOptions): number | null {
+  const value = Number(text.trim().replace(',', '.'));
+  if (text.trim() === '' || !Number.isFinite(value)) return null;
+  if (options.integer && !Number.isInteger(value)) return null;
+  if (value < (options.minimum ?? -Infinity) || value > (options.maximum ?? Infinity)) return null;
+  return value;
+}
+
+function numberInput(options: NumberOptions, label: string): { input: HTMLInputElement; set(value: number): void } {
+  const input = h('input', { type: 'text', inputmode: 'decimal', class: 'number', 'aria-label': label, autocomplete: 'off' });
+  let shown = NaN;
+  const show = (value: number) => {
+    shown = value;
+    input.value = formatNumber(value, 5);
+    input.dataset['dirty'] = 'false';
+    input.removeAttribute('aria-invalid');
+  };
+  const commit = () => {
+    if (input.dataset['dirty'] !== 'true') return;
+    const value = parseTyped(input.value, options);
+    if (value === null) {
+      input.setAttribute('aria-invalid', 'true');
+      input.title = `${options.integer ? 'A whole number' : 'A number'} from ${options.minimum ?? '−∞'} to ${options.maximum ?? '∞'}`;
+      return;
+    }
+    input.title = '';
+    show(value);
+    options.onInput(value);
+  };
+  input.addEventListener('input', () => { input.dataset['dirty'] = 'true'; });
+  input.addEventListener('change', commit);
+  input.addEventListener('keydown', (event) => {
+    if (event.key === 'Enter') commit();
+    if (event.key === 'Escape') show(shown);
+    if (event.key !== 'ArrowUp' && event.key !== 'ArrowDown') return;
+    event.preventDefault();
+    const step = nudgeStep(shown, options) * (event.key === 'ArrowUp' ? 1 : -1) * (event.shiftKey ? 10 : 1);
+    const value = clamp(shown + step, options);
+    show(value);
+    options.onInput(value);
+  });
+  return { input, set: (value) => { if (!isBusy(input)) show(value); } };
+}
+
+const clamp = (value: number, o: NumberOptions): number =>
+  Math.min(o.maximum ?? Infinity, Math.max(o.minimum ?? -Infinity, value));
+
+/** One arrow key press: a hundredth of the range, or of the value's decade where there is no range. */
+function nudgeStep(value: number, options: NumberOptions): number {
+  if (options.integer) return 1;
+  const range = (options.softMaximum ?? options.maximum ?? Infinity) - (options.softMinimum ?? options.minimum ?? -Infinity);
+  if (Number.isFinite(range) && range < 1000) return Math.pow(10, Math.floor(Math.log10(range / 20)));
+  return Math.pow(10, Math.floor(Math.log10(Math.max(Math.abs(value), 0.01))) - 1);
+}
+
+/** Slider position of a value and back; both in 0..kSliderSteps. */
+export function sliderScale(options: Omit<NumberOptions, 'label' | 'onInput'>) {
+  const low = options.softMinimum ?? options.minimum ?? 0;
+  const high = options.softMaximum ?? options.maximum ?? 1;
+  // Zero cannot be reached on a logarithm: a slope that is linear below a thousandth of the range joins both.
+  const knee = (high - low) / 1000;
+  const forward = (v: number) => (options.logarithmic ? Math.log1p((v - low) / knee) : v - low);
+  const span = forward(high) || 1;
+  return {
+    positionOf: (value: number) => Math.round((forward(Math.min(high, Math.max(low, value))) / span) * kSliderSteps),
+    valueAt: (position: number) => {
+      const f = (position / kSliderSteps) * span;
+      const value = low + (options.logarithmic ? Math.expm1(f) * knee : f);
+      return options.integer ? Math.round(value) : Number(value.toPrecision(4));
+    },
+  };
+}
+
+export function numberField(options: NumberOptions): Field<number> {
+  const id = uniqueId('field');
+  const entry = numberInput(options, options.label);
+  entry.input.id = id;
+  const row = h('div', { class: 'field', title: options.description },
+    h('label', { for: id }, labelText(options.label, options.unit)), entry.input);
+  if (options.slider === false) return { element: row, set: entry.set };
+
+  const scale = sliderScale(options);
+  const slider = h('input', { type: 'range', min: 0, max: kSliderSteps, step: 1, 'aria-label': `${options.label}, slider` });
+  const moveSlider = (value: number) => {
+    slider.value = String(scale.positionOf(value));
+    slider.setAttribute('aria-valuetext', `${formatNumber(value)} ${options.unit ?? ''}`.trim());
+  };
+  slider.addEventListener('input', () => {
+    const value = scale.valueAt(Number(slider.value));
+    entry.set(value);
+    moveSliderText(value);
+    options.onInput(value);
+  });
+  const moveSliderText = (value: number) => slider.setAttribute('aria-valuetext', formatNumber(value));
+  entry.input.addEventListener('change', () => {
+    const value = parseTyped(entry.input.value, options);
+    if (value !== null) moveSlider(value);
+  });
+  let dragging = false;
+  slider.addEventListener('pointerdown', () => { dragging = true; });
+  slider.addEventListener('pointerup', () => { dragging = false; });
+  slider.addEventListener('pointercancel', () => { dragging = false; });
+  row.append(slider);
+  row.classList.add('with-slider');
+  return {
+    element: row,
+    set(value) {
+      if (dragging) return;
+      entry.set(value);
+      moveSlider(value);
+    },
+  };
+}
+
+/** Components of a vector side by side. */
+export function vectorField(options: Omit<NumberOptions, 'onInput'> & { components: readonly string[]; onInput(value: number[]): void }): Field<readonly number[]> {
+  let current: number[] = options.components.map(() => 0);
+  const entries = options.components.map((component, i) => numberInput({
+    ...options,
+    onInput: (value) => {
+      current = current.map((old, k) => (k === i ? value : old));
+      options.onInput(current);
+    },
+  }, `${options.label} ${component}`));
+  const boxes = entries.map((entry, i) => h('span', { class: 'component' },
+    h('span', { class: 'axis', 'aria-hidden': 'true' }, options.components[i]), entry.input));
+  const row = h('div', { class: 'field vector', role: 'group', 'aria-label': options.label, title: options.description },
+    labelText(options.label, options.unit), h('div', { class: 'components' }, ...boxes));
+  return {
+    element: row,
+    set(value) {
+      current = [...value];
+      entries.forEach((entry, i) => entry.set(value[i] ?? 0));
+    },
+  };
+}
+
+export interface ColorOptions {
+  label: string;
+  unit?: string | undefined;
+  /** Largest component that may be edited; above 1 the field gets a strength slider of its own. */
+  maximum: number;
+  softMaximum?: number | undefined;
+  description?: string | undefined;
+  onInput(linear: Vec3): void;
+}
+
+/** A colour: the picker speaks sRGB, the numbers and the server linear Rec. 709. */
+export function colorField(options: ColorOptions): Field<Vec3> {
+  const id = uniqueId('color');
+  const bounded = options.maximum <= 1;
+  let color: Vec3 = [1, 1, 1];
+  const picker = h('input', { type: 'color', id });
+  const changed = (linear: Vec3) => {
+    color = linear;
+    show();
+    options.onInput(linear);
+  };
+  const numbers = vectorField({
+    label: `${options.label}, linear`, components: ['R', 'G', 'B'], minimum: 0, maximum: options.maximum,
+    onInput: ([r = 0, g = 0, b = 0]) => changed([r, g, b]),
+  });
+  const strengthField = bounded ? null : numberField({
+    label: 'strength', minimum: 0, maximum: options.maximum, softMaximum: options.softMaximum, logarithmic: true,
+    onInput: (strength) => {
+      const [r, g, b] = splitStrength(color).color;
+      changed([r * strength, g * strength, b * strength]);
+    },
+  });
+  const show = () => {
+    if (document.activeElement !== picker) picker.value = hexFromLinear(bounded ? color : splitStrength(color).color);
+    numbers.set(color);
+    strengthField?.set(splitStrength(color).strength);
+  };
+  picker.addEventListener('input', () => {
+    const linear = linearFromHex(picker.value);
+    if (bounded || Math.max(...linear) === 0) {
+      changed(linear);
+      return;
+    }
+    const strength = splitStrength(color).strength || 1;
+    const [r, g, b] = splitStrength(linear).color;
+    changed([r * strength, g * strength, b * strength]);
+  });
+  numbers.element.classList.remove('field');
+  numbers.element.querySelector('.name')?.remove();
+  return {
+    element: h('div', { class: 'field color', title: options.description },
+      h('label', { for: id }, labelText(options.label, options.unit)), picker, numbers.element, strengthField?.element),
+    set(value) {
+      color = value;
+      show();
+    },
+  };
+}
+
+export interface Choice { value: string; title: string; description?: string | undefined }
+
+export function selectField(label: string, choices: readonly Choice[], onInput: (value: string) => void): Field<string> {
+  const id = uniqueId('select');
+  const options = choices.map((c) => h('option', { value: c.value, title: c.description }, c.title));
+  const select = h('select', { id, onChange: () => onInput(select.value) }, ...options);
+  return {
+    element: h('div', { class: 'field' }, h('label', { for: id }, labelText(label)), select),
+    set(value) { select.value = value; },
+  };
+}
+
+export function checkField(label: string, onInput: (value: boolean) => void, description?: string | undefined): Field<boolean> {
+  const id = uniqueId('check');
+  const box = h('input', { type: 'checkbox', id, onChange: () => onInput(box.checked) });
+  return {
+    element: h('div', { class: 'field check', title: description }, h('label', { for: id }, labelText(label)), box),
+    set(value) { box.checked = value; },
+  };
+}

@@ -1,0 +1,44 @@
+const kMissing = '–';
+
+/** A number for people: `digits` significant digits, no exponent between 1e-4 and 1e6, no trailing zeros. */
+export function formatNumber(value: number, digits = 4): string {
+  if (!Number.isFinite(value)) return kMissing;
+  if (value === 0) return '0';
+  const magnitude = Math.abs(value);
+  if (magnitude < 1e-4 || magnitude >= 1e6) return value.toExponential(Math.max(0, digits - 2));
+  return String(Number(value.toPrecision(digits)));
+}
+
+export function formatSeconds(seconds: number): string {
+  if (!Number.isFinite(seconds)) return kMissing;
+  if (seconds < 10) return `${seconds.toFixed(2)} s`;
+  if (seconds < 100) return `${seconds.toFixed(1)} s`;
+  return `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s`;
+}
+
+export function formatMilliseconds(ms: number): string {
+  if (!Number.isFinite(ms)) return kMissing;
+  return ms < 10 ? `${ms.toFixed(1)} ms` : `${Math.round(ms)} ms`;
+}
+
+export function formatBytes(bytes: number): string {
+  if (!Number.isFinite(bytes)) return kMissing;
+  const units = ['B', 'kB', 'MB', 'GB'];
+  let value = bytes;
+  let unit = 0;
+  while (value >= 1000 && unit < units.length - 1) {
+    value /= 1000;
+    unit++;
+  }
+  return `${unit === 0 ? Math.round(value) : value.toPrecision(3)} ${units[unit]}`;
+}
+
+export function formatCount(value: number): string {
+  return Number.isFinite(value) ? Math.round(value).toLocaleString('en') : kMissing;
+}
+
+/** "baseColor" → "Base color": what people read for a name of the wire. */
+export function titleFromName(name: string): string {
+  const words = name.replace(/[-_]/g, ' ').replace(/([a-z0-9])([A-Z])/g, '$1 $2').toLowerCase().trim();
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
