@@ -71,7 +71,19 @@ Result<void> writeExr(const std::filesystem::path& file, const FilmImage& image)
   return writeFileAtomically(file, *bytes);
 }
 
-Result<FilmImage> decodeExr(std::span<const uint8_t> bytes, const std::string& place, const ExrLimits& limits) {
+namespace {
+
+enum class Content { header, pixels };
+
+void fillLayer(FilmLayer& layer, const ExrLayerPlan& plan, const std::vector<float>& interleaved, size_t stride) {
+  const size_t pixels = interleaved.size() / stride, channels = layer.channels;
+  layer.data.resize(pixels * channels);
+  for (size_t p = 0; p < pixels; ++p)
+    for (size_t c = 0; c < channels; ++c) layer.data[p * channels + c] = interleaved[p * stride + plan.sources[c]];
+}
+
+Result<FilmImage> decode(std::span<const uint8_t> bytes, const std::string& place, const ExrLimits& limits,
+                         Content content) {
   const Result<ExrHeader> header = readExrHeader(bytes, limits, place);
   if (!header) return header.error();
 
@@ -84,28 +96,39 @@ Result<FilmImage> decodeExr(std::span<const uint8_t> bytes, const std::string& p
       size_t(spec.nchannels) != header->channels.size())
     return Error{"bad-file", "the header contradicts itself", place};
 
+  FilmImage image{header->width, header->height, {}, {}};
+  for (const OIIO::ParamValue& attribute : spec.extra_attribs)
+    if (isMetadata(attribute)) image.metadata.emplace_back(attribute.name().string(), attribute.get_string());
+  std::sort(image.metadata.begin(), image.metadata.end());
+  const std::vector<ExrLayerPlan> plans = planExrLayers(spec.channelnames);
+  for (const ExrLayerPlan& plan : plans) image.layers.push_back({plan.name, uint32_t(plan.sources.size()), {}});
+  if (content == Content::header) return image;
+
   const size_t pixels = size_t(header->width) * header->height, stride = size_t(spec.nchannels);
   std::vector<float> interleaved(pixels * stride);
   if (!in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, interleaved.data()))
     return Error{"bad-file", "the pixels cannot be decoded: " + in->geterror(), place};
-
-  FilmImage image{header->width, header->height, {}, {}};
-  for (const ExrLayerPlan& plan : planExrLayers(spec.channelnames)) {
-    FilmLayer layer{plan.name, uint32_t(plan.sources.size()), std::vector<float>(pixels * plan.sources.size())};
-    for (size_t p = 0; p < pixels; ++p)
-      for (size_t c = 0; c < plan.sources.size(); ++c)
-        layer.data[p * plan.sources.size() + c] = interleaved[p * stride + plan.sources[c]];
-    image.layers.push_back(std::move(layer));
-  }
-  for (const OIIO::ParamValue& attribute : spec.extra_attribs)
-    if (isMetadata(attribute)) image.metadata.emplace_back(attribute.name().string(), attribute.get_string());
-  std::sort(image.metadata.begin(), image.metadata.end());
+  for (size_t l = 0; l < plans.size(); ++l) fillLayer(image.layers[l], plans[l], interleaved, stride);
   return image;
 }
 
-Result<FilmImage> readExr(const std::filesystem::path& file, const ExrLimits& limits) {
+Result<FilmImage> readFile(const std::filesystem::path& file, const ExrLimits& limits, Content content) {
   const Result<std::vector<uint8_t>> bytes = readFileBytes(file, limits.maxFileBytes);
-  return bytes ? decodeExr(*bytes, file.string(), limits) : Result<FilmImage>(bytes.error());
+  return bytes ? decode(*bytes, file.string(), limits, content) : Result<FilmImage>(bytes.error());
+}
+
+}  // namespace
+
+Result<FilmImage> decodeExr(std::span<const uint8_t> bytes, const std::string& place, const ExrLimits& limits) {
+  return decode(bytes, place, limits, Content::pixels);
+}
+
+Result<FilmImage> readExr(const std::filesystem::path& file, const ExrLimits& limits) {
+  return readFile(file, limits, Content::pixels);
+}
+
+Result<FilmImage> readExrWithoutPixels(const std::filesystem::path& file, const ExrLimits& limits) {
+  return readFile(file, limits, Content::header);
 }
 
 Result<std::vector<uint8_t>> encodePng(uint32_t width, uint32_t height, std::span<const uint8_t> rgba) {

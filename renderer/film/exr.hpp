@@ -24,6 +24,9 @@ Result<void> writeExr(const std::filesystem::path& file, const FilmImage& image)
 Result<FilmImage> decodeExr(std::span<const uint8_t> bytes, const std::string& place, const ExrLimits& limits = {});
 Result<FilmImage> readExr(const std::filesystem::path& file, const ExrLimits& limits = {});
 
+/// As readExr(), but the layers have no data: for what a file says about itself.
+Result<FilmImage> readExrWithoutPixels(const std::filesystem::path& file, const ExrLimits& limits = {});
+
 /// `rgba` as FrameSlot has it: width*height*4, sRGB-encoded, row 0 on top. Alpha is left out. Errors: "io".
 Result<std::vector<uint8_t>> encodePng(uint32_t width, uint32_t height, std::span<const uint8_t> rgba);
 Result<void> writePng(const std::filesystem::path& file, uint32_t width, uint32_t height,

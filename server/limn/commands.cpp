@@ -1,0 +1,46 @@
+#include "server/limn/commands.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace limn {
+namespace {
+
+std::string overview() {
+  std::string text = "usage: limn COMMAND [arguments]\n\ncommands:\n";
+  for (const Command& command : allCommands()) {
+    std::string line = "  " + command.spec.name.substr(std::string("limn ").size());
+    line.resize(12, ' ');
+    text += line + command.spec.summary + "\n";
+  }
+  return text + "\nlimn COMMAND --help lists the flags of a command.\n"
+                "Exit codes: 0 done, 64 wrong usage, 75 the device must be reset, 1 any other failure.\n";
+}
+
+}  // namespace
+
+std::vector<Command> allCommands() { return {compareCommand(), mergeCommand(), devicesCommand()}; }
+
+int runLimn(const std::vector<std::string>& words) {
+  if (words.empty()) return reportFailure("limn", usageError("no command; limn --help lists them"));
+  if (words[0] == "--help" || words[0] == "-h") {
+    std::fputs(overview().c_str(), stdout);
+    return kExitOk;
+  }
+  const std::vector<Command> commands = allCommands();
+  const auto command = std::find_if(commands.begin(), commands.end(),
+                                    [&](const Command& c) { return c.spec.name == "limn " + words[0]; });
+  if (command == commands.end())
+    return reportFailure("limn", usageError("unknown command '" + words[0] + "'; limn --help lists them"));
+
+  const Result<Arguments> arguments = Arguments::parse(command->spec, std::span(words).subspan(1));
+  if (!arguments) return reportFailure(command->spec.name, arguments.error());
+  if (arguments->help()) {
+    std::fputs(helpText(command->spec).c_str(), stdout);
+    return kExitOk;
+  }
+  const Result<void> done = command->run(*arguments);
+  return done ? int(kExitOk) : reportFailure(command->spec.name, done.error());
+}
+
+}  // namespace limn
