@@ -49,7 +49,9 @@ def chair():
 
 def blue_vase():
     """A bulbous bottle of glass 5 mm thick, walked from the foot up the outside and down the inside."""
-    outer = catmull_rom([(0.045, 0.004), (0.082, 0.05), (0.094, 0.11), (0.062, 0.19), (0.026, 0.25), (0.025, 0.30), (0.042, 0.335)], 5)
+    outer = catmull_rom(
+        [(0.045, 0.004), (0.082, 0.05), (0.094, 0.11), (0.062, 0.19), (0.026, 0.25), (0.025, 0.30), (0.042, 0.335)], 5
+    )
     inner = [(max(r - 0.005, 0.001), max(y, 0.014)) for r, y in reversed(outer)]
     foot = [(0.0, 0.0), (0.041, 0.0)]
     rim = [outer[-1], (0.0405, 0.3375), inner[0]]
@@ -58,9 +60,13 @@ def blue_vase():
 
 def floor_vase():
     """A tall ceramic vase with an open neck."""
-    outer = catmull_rom([(0.07, 0.0), (0.125, 0.10), (0.165, 0.28), (0.135, 0.44), (0.062, 0.54), (0.055, 0.60), (0.082, 0.64)], 5)
+    outer = catmull_rom(
+        [(0.07, 0.0), (0.125, 0.10), (0.165, 0.28), (0.135, 0.44), (0.062, 0.54), (0.055, 0.60), (0.082, 0.64)], 5
+    )
     inner = [(0.074, 0.634), (0.048, 0.60), (0.054, 0.53), (0.12, 0.42)]
-    return lathe([[(0.0, 0.0), outer[0]], outer, [outer[-1], (0.079, 0.643), inner[0]], inner, [inner[-1], (0.0, 0.40)]], 44)
+    return lathe(
+        [[(0.0, 0.0), outer[0]], outer, [outer[-1], (0.079, 0.643), inner[0]], inner, [inner[-1], (0.0, 0.40)]], 44
+    )
 
 
 def bowl():
@@ -81,7 +87,13 @@ def orange(radius=0.038):
 
 def oranges():
     """Five oranges that rest in the bowl."""
-    places = ((0.045, 0.062, 0.02), (-0.038, 0.062, 0.034), (-0.028, 0.063, -0.044), (0.048, 0.066, -0.052), (0.004, 0.116, 0.0))
+    places = (
+        (0.045, 0.062, 0.02),
+        (-0.038, 0.062, 0.034),
+        (-0.028, 0.063, -0.044),
+        (0.048, 0.066, -0.052),
+        (0.004, 0.116, 0.0),
+    )
     turned = [orange().moved(p, vec.quaternion((1.0, 0.3 * k, 0.5), 35.0 * k - 60.0)) for k, p in enumerate(places)]
     return merged(turned)
 
@@ -89,7 +101,9 @@ def oranges():
 def book(width, depth, thickness):
     """Cover and pages of a lying book, its spine towards -x."""
     board = 0.003
-    boards = [bevel_box((width, board, depth), 0.0012, 1).moved((0.0, y, 0.0)) for y in (0.5 * board, thickness - 0.5 * board)]
+    boards = [
+        bevel_box((width, board, depth), 0.0012, 1).moved((0.0, y, 0.0)) for y in (0.5 * board, thickness - 0.5 * board)
+    ]
     spine = bevel_box((board, thickness, depth), 0.0012, 1).moved((0.5 * (board - width), 0.5 * thickness, 0.0))
     pages = shapes.box((width - 0.008, thickness - 2.0 * board, depth - 0.010)).moved((-0.002, 0.5 * thickness, 0.0))
     return merged(boards + [spine]), pages
@@ -108,11 +122,11 @@ def plant_blades(count=17):
         points, normals = [], []
         for s, t, _ in blade.positions:
             across = (s - 0.5) * 2.0
-            half = wide * (0.55 + 0.9 * t - 1.43 * t ** 3.2)
-            reach = root + tall * (lean * t + curl * t ** 2.6)
+            half = wide * (0.55 + 0.9 * t - 1.43 * t**3.2)
+            reach = root + tall * (lean * t + curl * t**2.6)
             fold = 0.35 * half * across * across
-            points.append((across * half, tall * (t - 0.12 * curl * t ** 3), reach - fold))
-            normals.append(vec.normalize((-0.7 * across, -(lean + 2.6 * curl * t ** 1.6), 1.0)))
+            points.append((across * half, tall * (t - 0.12 * curl * t**3), reach - fold))
+            normals.append(vec.normalize((-0.7 * across, -(lean + 2.6 * curl * t**1.6), 1.0)))
         blade.positions, blade.normals = points, normals
         blades.append(blade.moved((0.0, 0.0, 0.0), vec.quaternion(vec.Y, turn)))
     return merged(blades)
@@ -120,8 +134,16 @@ def plant_blades(count=17):
 
 def plant_pot():
     outer = catmull_rom([(0.095, 0.0), (0.115, 0.06), (0.145, 0.20), (0.152, 0.27)], 5)
-    return lathe([[(0.0, 0.0), outer[0]], outer, [outer[-1], (0.155, 0.275), (0.150, 0.28), (0.141, 0.275)],
-                  [(0.141, 0.275), (0.132, 0.22)]], 44, (1.0, 1.0))
+    return lathe(
+        [
+            [(0.0, 0.0), outer[0]],
+            outer,
+            [outer[-1], (0.155, 0.275), (0.150, 0.28), (0.141, 0.275)],
+            [(0.141, 0.275), (0.132, 0.22)],
+        ],
+        44,
+        (1.0, 1.0),
+    )
 
 
 def soil():
@@ -136,7 +158,13 @@ def arc_lamp(reach, top, drop):
     for k in range(1, 33):
         t = k / 32.0
         angle = math.pi * 0.80 * t
-        path.append((reach * (1.0 - math.cos(angle)) / (1.0 - math.cos(math.pi * 0.80)), start + (top - start) * math.sin(angle), 0.0))
+        path.append(
+            (
+                reach * (1.0 - math.cos(angle)) / (1.0 - math.cos(math.pi * 0.80)),
+                start + (top - start) * math.sin(angle),
+                0.0,
+            )
+        )
     end = path[-1]
     stem = [end, (end[0] + 0.004, end[1] - 0.4 * drop, 0.0), (end[0] + 0.004, end[1] - drop, 0.0)]
     return base, tube(path, 0.012, 16).append(tube(stem, 0.008, 12)), stem[-1]
@@ -156,7 +184,9 @@ def window_frame(width, height):
     bar, deep = 0.055, 0.05
     parts = []
     for s in (-1.0, 1.0):
-        parts.append(bevel_box((bar, height + 2.0 * bar, deep), 0.006, 2).moved((s * 0.5 * (width + bar), 0.0, 0.5 * deep)))
+        parts.append(
+            bevel_box((bar, height + 2.0 * bar, deep), 0.006, 2).moved((s * 0.5 * (width + bar), 0.0, 0.5 * deep))
+        )
         parts.append(bevel_box((width, bar, deep), 0.006, 2).moved((0.0, s * 0.5 * (height + bar), 0.5 * deep)))
     parts.append(bevel_box((0.03, height, 0.03), 0.004, 1).moved((0.0, 0.0, 0.03)))
     parts.append(bevel_box((width, 0.03, 0.03), 0.004, 1).moved((0.0, 0.12 * height, 0.03)))

@@ -1,5 +1,5 @@
-"""Meshes stored in the less usual ways glTF allows. Each function adds a mesh of about 0.8 m around the origin, facing +z, and
-returns the arguments of its node."""
+"""Meshes stored in the less usual ways glTF allows. Each function adds a mesh of about 0.8 m around the origin,
+facing +z, and returns the arguments of its node."""
 
 import array
 import math
@@ -33,16 +33,22 @@ def sparse(scene, name, material):
     indices = scene.add_view(array.array("H", [k for k, _ in raised]).tobytes())
     values = scene.add_view(array.array("f", flat(lifted)).tobytes())
     every = [p for p in mesh.positions] + lifted
-    scene.document["accessors"][position].update({
-        "min": [min(array.array("f", [p[c] for p in every])) for c in range(3)],
-        "max": [max(array.array("f", [p[c] for p in every])) for c in range(3)],
-        "sparse": {
-            "count": len(raised),
-            "indices": {"bufferView": indices, "componentType": UINT16},
-            "values": {"bufferView": values},
-        },
-    })
-    return {"mesh": _mesh(scene, name, {"POSITION": position}, material, scene.add_indices(mesh.indices, len(mesh.positions)))}
+    scene.document["accessors"][position].update(
+        {
+            "min": [min(array.array("f", [p[c] for p in every])) for c in range(3)],
+            "max": [max(array.array("f", [p[c] for p in every])) for c in range(3)],
+            "sparse": {
+                "count": len(raised),
+                "indices": {"bufferView": indices, "componentType": UINT16},
+                "values": {"bufferView": values},
+            },
+        }
+    )
+    return {
+        "mesh": _mesh(
+            scene, name, {"POSITION": position}, material, scene.add_indices(mesh.indices, len(mesh.positions))
+        )
+    }
 
 
 def interleaved(scene, name, material):
@@ -52,7 +58,13 @@ def interleaved(scene, name, material):
     view = scene.add_view(packed, 34962, 32)
     attributes = {}
     for semantic, offset, kind in (("POSITION", 0, "VEC3"), ("NORMAL", 12, "VEC3"), ("TEXCOORD_0", 24, "VEC2")):
-        accessor = {"bufferView": view, "byteOffset": offset, "componentType": FLOAT, "count": len(mesh.positions), "type": kind}
+        accessor = {
+            "bufferView": view,
+            "byteOffset": offset,
+            "componentType": FLOAT,
+            "count": len(mesh.positions),
+            "type": kind,
+        }
         if semantic == "POSITION":
             columns = [array.array("f", [p[c] for p in mesh.positions]) for c in range(3)]
             accessor.update({"min": [min(c) for c in columns], "max": [max(c) for c in columns]})
@@ -61,7 +73,8 @@ def interleaved(scene, name, material):
 
 
 def quantized(scene, name, material):
-    """A torus knot with 16-bit positions, 8-bit normals and 16-bit UVs [KHR_mesh_quantization]; its node scales it back."""
+    """A torus knot with 16-bit positions, 8-bit normals and 16-bit UVs [KHR_mesh_quantization]; its node scales it
+    back."""
     scene.required.append("KHR_mesh_quantization")
     mesh = shapes.torus_knot(2, 3, 0.22, 0.09, 0.06, 120, 12)
     step = 0.4 / 65535.0
@@ -72,17 +85,37 @@ def quantized(scene, name, material):
     count = len(mesh.positions)
     columns = [positions[c::4] for c in range(3)]
     attributes = {
-        "POSITION": scene.add("accessors", {
-            "bufferView": scene.add_view(positions.tobytes(), 34962, 8), "componentType": UINT16, "count": count, "type": "VEC3",
-            "min": [min(c) for c in columns], "max": [max(c) for c in columns]}),
-        "NORMAL": scene.add("accessors", {
-            "bufferView": scene.add_view(normals.tobytes(), 34962, 4), "componentType": INT8, "normalized": True, "count": count,
-            "type": "VEC3"}),
+        "POSITION": scene.add(
+            "accessors",
+            {
+                "bufferView": scene.add_view(positions.tobytes(), 34962, 8),
+                "componentType": UINT16,
+                "count": count,
+                "type": "VEC3",
+                "min": [min(c) for c in columns],
+                "max": [max(c) for c in columns],
+            },
+        ),
+        "NORMAL": scene.add(
+            "accessors",
+            {
+                "bufferView": scene.add_view(normals.tobytes(), 34962, 4),
+                "componentType": INT8,
+                "normalized": True,
+                "count": count,
+                "type": "VEC3",
+            },
+        ),
         "TEXCOORD_0": scene.add_accessor(
-            [int(c % 1.0 * 65535.0) for c in flat(mesh.uvs)], "VEC2", UINT16, normalized=True),
+            [int(c % 1.0 * 65535.0) for c in flat(mesh.uvs)], "VEC2", UINT16, normalized=True
+        ),
     }
-    child = scene.add_node(name + ", dequantized", translation=(-0.4, -0.4, -0.4), scale=[2.0 * step] * 3,
-                           mesh=_mesh(scene, name, attributes, material, scene.add_indices(mesh.indices, count)))
+    child = scene.add_node(
+        name + ", dequantized",
+        translation=(-0.4, -0.4, -0.4),
+        scale=[2.0 * step] * 3,
+        mesh=_mesh(scene, name, attributes, material, scene.add_indices(mesh.indices, count)),
+    )
     return {"children": [child]}
 
 
@@ -92,13 +125,22 @@ def strip(scene, name, material):
     for k in range(17):
         x, z = -0.4 + 0.05 * k, 0.08 * math.sin(0.75 * k)
         points += [(x, 0.4, z), (x, -0.4, z)]
-    return {"mesh": _mesh(scene, name, {"POSITION": scene.add_accessor(flat(points), "VEC3", bounds=True)}, material,
-                          mode=TRIANGLE_STRIP)}
+    return {
+        "mesh": _mesh(
+            scene,
+            name,
+            {"POSITION": scene.add_accessor(flat(points), "VEC3", bounds=True)},
+            material,
+            mode=TRIANGLE_STRIP,
+        )
+    }
 
 
 def fan(scene, name, material):
     """A disc as a triangle fan with 8-bit indices."""
-    points = [(0.0, 0.0, 0.08)] + [(0.4 * math.cos(k * math.pi / 12.0), 0.4 * math.sin(k * math.pi / 12.0), 0.0) for k in range(24)]
+    points = [(0.0, 0.0, 0.08)] + [
+        (0.4 * math.cos(k * math.pi / 12.0), 0.4 * math.sin(k * math.pi / 12.0), 0.0) for k in range(24)
+    ]
     indices = scene.add_accessor(list(range(25)) + [1], "SCALAR", UINT8, 34963)
     attributes = {"POSITION": scene.add_accessor(flat(points), "VEC3", bounds=True)}
     return {"mesh": _mesh(scene, name, attributes, material, indices, mode=TRIANGLE_FAN)}
@@ -136,7 +178,9 @@ def morphed(scene, name, material):
     hill = [(0.0, 0.0, 0.3 * math.cos(math.pi * p[0] / 0.8) * math.cos(math.pi * p[1] / 0.8)) for p in mesh.positions]
     shear = [(0.3 * p[1], 0.0, 0.0) for p in mesh.positions]
     primitive = scene.primitive(mesh, material, normals=False)
-    primitive["targets"] = [{"POSITION": scene.add_accessor(flat(deltas), "VEC3", bounds=True)} for deltas in (hill, shear)]
+    primitive["targets"] = [
+        {"POSITION": scene.add_accessor(flat(deltas), "VEC3", bounds=True)} for deltas in (hill, shear)
+    ]
     return {"mesh": scene.add("meshes", {"name": name, "primitives": [primitive], "weights": [0.75, 0.5]})}
 
 

@@ -15,7 +15,17 @@ import scenes_places
 import scenes_plant
 import scenes_textures
 
-REGISTRIES = (scenes_demo, scenes_cornell, scenes_furnace, scenes_analytic, scenes_places, scenes_plant, scenes_textures, scenes_hard, scenes_large)
+REGISTRIES = (
+    scenes_demo,
+    scenes_cornell,
+    scenes_furnace,
+    scenes_analytic,
+    scenes_places,
+    scenes_plant,
+    scenes_textures,
+    scenes_hard,
+    scenes_large,
+)
 SCENES = {name: make for module in REGISTRIES for name, make in module.SCENES.items()}
 ON_REQUEST = frozenset(scenes_large.SCENES)
 
@@ -27,7 +37,9 @@ def default_names():
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=pathlib.Path, help="the folder to write NAME.glb into")
-    parser.add_argument("--list", action="store_true", help="print the names, one a line; * marks those made only when named")
+    parser.add_argument(
+        "--list", action="store_true", help="print the names, one a line; * marks those made only when named"
+    )
     parser.add_argument("names", nargs="*", metavar="NAME", help="scenes to make (all but the marked ones)")
     options = parser.parse_args(arguments)
     if options.list:

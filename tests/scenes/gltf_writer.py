@@ -46,14 +46,19 @@ def _extensions_in(value, found):
 
 
 class Builder:
-    """Collects an asset. The add_ functions return the index of what they added; nodes are roots unless they are children."""
+    """Collects an asset. The add_ functions return the index of what they added; nodes are roots unless they are
+    children."""
 
     def __init__(self, name):
         self.binary = bytearray()
         self.lights = []
         self.children = set()
         self.required = []
-        self.document = {"asset": {"version": "2.0", "generator": "Limn scene generator"}, "scene": 0, "scenes": [{"name": name}]}
+        self.document = {
+            "asset": {"version": "2.0", "generator": "Limn scene generator"},
+            "scene": 0,
+            "scenes": [{"name": name}],
+        }
 
     def add(self, kind, item):
         """Appends item to the top-level array called kind."""
@@ -123,7 +128,9 @@ class Builder:
         samplers = self.document.setdefault("samplers", [])
         if sampler not in samplers:
             samplers.append(sampler)
-        return self.add("textures", {"name": name, "sampler": samplers.index(sampler), "source": self.add_image(name, png_bytes)})
+        return self.add(
+            "textures", {"name": name, "sampler": samplers.index(sampler), "source": self.add_image(name, png_bytes)}
+        )
 
     def add_node(self, name, *, translation=None, rotation=None, scale=None, children=None, light=None, **more):
         node = {"name": name, **more}
@@ -141,7 +148,8 @@ class Builder:
         return self.add("nodes", node)
 
     def add_object(self, name, parts, material=None, **node):
-        """A node with its own mesh of the same name. parts: a mesh (then with material) or pairs of mesh and material."""
+        """A node with its own mesh of the same name. parts: a mesh (then with material) or pairs of mesh and
+        material."""
         pairs = parts if isinstance(parts, (list, tuple)) else [(parts, material)]
         return self.add_node(name, mesh=self.add_mesh(name, pairs), **node)
 

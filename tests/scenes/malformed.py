@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Writes broken glTF and GLB files into DIR/files and what must be said about each into DIR/expected.json.
 
-expected.json: {"control": file, "cases": [{"file", "code", "pointer"}, ...]}, files relative to DIR. `code` is the loader's error
-code, `pointer` the JSON pointer after '#' of the error's place, empty where the file as a whole is at fault. The control file is
-sound; every case differs from it in one thing. The asset root is the folder of the file, DIR/files; DIR/outside.bin lies outside it.
+expected.json: {"control": file, "cases": [{"file", "code", "pointer"}, ...]}, files relative to DIR. `code` is the
+loader's error code, `pointer` the JSON pointer after '#' of the error's place, empty where the file as a whole is at
+fault. The control file is sound; every case differs from it in one thing. The asset root is the folder of the file,
+DIR/files; DIR/outside.bin lies outside it.
 """
 
 import argparse
@@ -24,7 +25,7 @@ def _container_cases(document, binary):
     header = struct.pack("<4sII", b"glTF", 2, len(whole))
 
     def patched(offset, value):
-        return whole[:offset] + struct.pack("<I", value) + whole[offset + 4:]
+        return whole[:offset] + struct.pack("<I", value) + whole[offset + 4 :]
 
     deep = b'{"asset":{"version":"2.0"},"extras":' + b"[" * 100000 + b"]" * 100000 + b"}"
     return [
@@ -32,7 +33,7 @@ def _container_cases(document, binary):
         ("glb-header-cut.glb", "bad-json", "", whole[:8]),
         ("glb-bad-magic.glb", "bad-json", "", b"glTX" + whole[4:]),
         ("glb-version-1.glb", "unsupported", "", patched(4, 1)),
-        ("glb-truncated.glb", "bad-file", "", whole[:-len(binary) // 2]),
+        ("glb-truncated.glb", "bad-file", "", whole[: -len(binary) // 2]),
         ("glb-length-lies.glb", "bad-file", "", patched(8, 0xFFFFFFFF)),
         ("glb-json-chunk-lies.glb", "bad-file", "", patched(12, 0x7FFFFFFF)),
         ("glb-binary-chunk-lies.glb", "bad-file", "", patched(20 + json_length, len(binary) + 4096)),
@@ -40,7 +41,7 @@ def _container_cases(document, binary):
         ("glb-no-chunk.glb", "bad-file", "", struct.pack("<4sII", b"glTF", 2, 12)),
         ("glb-header-only.glb", "bad-file", "", header),
         ("json-syntax.gltf", "bad-json", "", text[:-1] + b",}"),
-        ("json-cut.gltf", "bad-json", "", text[:len(text) // 2]),
+        ("json-cut.gltf", "bad-json", "", text[: len(text) // 2]),
         ("json-not-utf8.gltf", "bad-json", "", text.replace(b"Checker", b"Ch\xff\xfecker", 1)),
         ("json-deep.gltf", "limit", "", deep),
         ("json-a-list.gltf", "bad-file", "", b"[]"),
@@ -49,6 +50,7 @@ def _container_cases(document, binary):
 
 def _uri_cases(document, binary):
     """Files whose buffer or image is named by a URI."""
+
     def buffer(uri):
         return json.dumps(document | {"buffers": [{"byteLength": len(binary), "uri": uri}]}).encode()
 
@@ -101,8 +103,10 @@ def write(output):
     (files / "control.glb").write_bytes(control)
     for name, _, _, data in cases:
         (files / name).write_bytes(data)
-    listing = {"control": "files/control.glb",
-               "cases": [{"file": f"files/{name}", "code": code, "pointer": pointer} for name, code, pointer, _ in cases]}
+    listing = {
+        "control": "files/control.glb",
+        "cases": [{"file": f"files/{name}", "code": code, "pointer": pointer} for name, code, pointer, _ in cases],
+    }
     (output / "expected.json").write_text(json.dumps(listing, indent=1) + "\n")
 
 

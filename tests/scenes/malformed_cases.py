@@ -1,4 +1,5 @@
-"""Documents broken in one place each. A case names the code the loader answers with and the JSON pointer it must show."""
+"""Documents broken in one place each. A case names the code the loader answers with and the JSON pointer it must
+show."""
 
 import base64
 import copy
@@ -14,8 +15,9 @@ CASES = []
 
 
 def sound():
-    """The document and binary chunk that every case breaks: a textured square under a point light.
-    Accessors: 0 POSITION, 1 NORMAL, 2 TEXCOORD_0, 3 indices. Nodes: 0 the square, 1 the light, 2 the camera, 3 and 4 empty."""
+    """The document and binary chunk that every case breaks: a textured square under a point light. Accessors: 0
+    POSITION, 1 NORMAL, 2 TEXCOORD_0, 3 indices. Nodes: 0 the square, 1 the light, 2 the camera, 3 and 4 empty.
+    """
     scene = Builder("control")
     panel = shapes.grid((-1.0, 0.0, 1.0), (2.0, 0.0, 0.0), (0.0, 0.0, -2.0))
     texture = scene.add_texture("Checker", textures.checker(8, 8, 2, 2, (0.9, 0.9, 0.9), (0.2, 0.2, 0.2)))
@@ -36,14 +38,17 @@ def sound():
 
 def case(name, code, pointer):
     """Registers a function that breaks (document, binary) in place, or returns the file's bytes itself."""
+
     def register(function):
         CASES.append((name, code, pointer, function))
         return function
+
     return register
 
 
 def set_at(name, code, pointer, value, at=None):
     """A case that stores value at a JSON pointer: the one expected in the answer unless another is given."""
+
     def change(document, _):
         *path, last = (at or pointer).strip("/").split("/")
         target = document
@@ -53,6 +58,7 @@ def set_at(name, code, pointer, value, at=None):
             target[int(last)] = value
         else:
             target[last] = value
+
     CASES.append((name, code, pointer, change))
 
 
@@ -64,7 +70,13 @@ def build(function, document, binary):
 
 # The document as a whole.
 set_at("asset-version-1", "unsupported", "/asset/version", "1.0")
-set_at("required-extension-unknown", "unsupported", "/extensionsRequired/0", ["KHR_draco_mesh_compression"], "/extensionsRequired")
+set_at(
+    "required-extension-unknown",
+    "unsupported",
+    "/extensionsRequired/0",
+    ["KHR_draco_mesh_compression"],
+    "/extensionsRequired",
+)
 set_at("scene-out-of-range", "out-of-range", "/scene", 7)
 set_at("scene-node-out-of-range", "out-of-range", "/scenes/0/nodes/0", 99)
 set_at("nodes-not-a-list", "bad-file", "/nodes", {"0": {}})
@@ -86,7 +98,7 @@ set_at("accessor-component-type-unknown", "bad-file", "/accessors/0/componentTyp
 set_at("accessor-type-unknown", "bad-file", "/accessors/0/type", "VEC5")
 set_at("accessor-view-out-of-range", "out-of-range", "/accessors/0/bufferView", 50)
 set_at("view-past-buffer", "out-of-range", "/bufferViews/1/byteLength", 1_000_000)
-set_at("view-offset-wraps", "out-of-range", "/bufferViews/1/byteOffset", 2 ** 64 - 8)
+set_at("view-offset-wraps", "out-of-range", "/bufferViews/1/byteOffset", 2**64 - 8)
 set_at("view-buffer-out-of-range", "out-of-range", "/bufferViews/1/buffer", 3)
 set_at("view-stride-too-small", "out-of-range", "/bufferViews/1/byteStride", 4)
 set_at("buffer-zero-size", "out-of-range", "/buffers/0/byteLength", 0)
@@ -99,7 +111,7 @@ set_at("attribute-counts-differ", "bad-file", "/meshes/0/primitives/0/attributes
 
 def _poke(document, binary, accessor, offset, data):
     start = document["bufferViews"][document["accessors"][accessor]["bufferView"]]["byteOffset"] + offset
-    binary[start:start + len(data)] = data
+    binary[start : start + len(data)] = data
 
 
 @case("index-past-vertices", "out-of-range", "/meshes/0/primitives/0/indices")
@@ -123,9 +135,15 @@ def _sparse(document, binary, count, indices):
     binary += struct.pack("<2H", *indices) + struct.pack("<6f", *[0.0] * 6)
     document["buffers"][0]["byteLength"] = len(binary)
     views = document["bufferViews"]
-    views += [{"buffer": 0, "byteOffset": start, "byteLength": 4}, {"buffer": 0, "byteOffset": start + 4, "byteLength": 24}]
-    document["accessors"][0]["sparse"] = {"count": count, "indices": {"bufferView": len(views) - 2, "componentType": 5123},
-                                          "values": {"bufferView": len(views) - 1}}
+    views += [
+        {"buffer": 0, "byteOffset": start, "byteLength": 4},
+        {"buffer": 0, "byteOffset": start + 4, "byteLength": 24},
+    ]
+    document["accessors"][0]["sparse"] = {
+        "count": count,
+        "indices": {"bufferView": len(views) - 2, "componentType": 5123},
+        "values": {"bufferView": len(views) - 1},
+    }
 
 
 @case("sparse-index-out-of-range", "out-of-range", "/accessors/0/sparse/indices")
@@ -189,7 +207,7 @@ def _(document, _):
 @case("image-truncated", "bad-file", "/images/0")
 def _(document, _):
     whole = textures.checker(64, 64, 7, 7, (0.9, 0.1, 0.1), (0.1, 0.1, 0.9))
-    _replace_image(document, whole[:len(whole) // 2])
+    _replace_image(document, whole[: len(whole) // 2])
 
 
 @case("image-of-text", "bad-file", "/images/0")

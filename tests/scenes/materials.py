@@ -66,6 +66,7 @@ def emitter(name, radiance, **more):
 
 def with_textures(material, base=None, roughness=None, normal=None, normal_scale=1.0, occlusion=None, transform=None):
     """Adds texture indices to a material; transform is one KHR_texture_transform for all of them."""
+
     def reference(index, **more):
         out = {"index": index, **more}
         if transform:

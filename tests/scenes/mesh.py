@@ -57,7 +57,7 @@ class Mesh:
         out.normals = [vec.scale(n, -1.0) for n in self.normals]
         out.uvs = list(self.uvs)
         for i in range(0, len(self.indices), 3):
-            a, b, c = self.indices[i:i + 3]
+            a, b, c = self.indices[i : i + 3]
             out.indices += (a, c, b)
         return out
 
@@ -80,7 +80,7 @@ def faceted(mesh):
     """A copy with flat normals and no shared corners: what is seen is then exactly the polyhedron."""
     out = Mesh()
     for i in range(0, len(mesh.indices), 3):
-        corners = mesh.indices[i:i + 3]
+        corners = mesh.indices[i : i + 3]
         a, b, c = (mesh.positions[k] for k in corners)
         normal = vec.normalize(vec.cross(vec.sub(b, a), vec.sub(c, a)))
         out.triangle(*[out.vertex(mesh.positions[k], normal, mesh.uvs[k]) for k in corners])

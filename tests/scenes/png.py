@@ -25,7 +25,7 @@ def _filtered(row, above, channels):
     left = bytes(channels) + row[:-channels]
     by_left = bytes((a - b) & 255 for a, b in zip(row, left))
     by_up = bytes((a - b) & 255 for a, b in zip(row, above))
-    cost, kind, best = min((_cost(row), 0, row), (_cost(by_left), 1, by_left), (_cost(by_up), 2, by_up))
+    _, kind, best = min((_cost(row), 0, row), (_cost(by_left), 1, by_left), (_cost(by_up), 2, by_up))
     return bytes((kind,)) + best
 
 
@@ -37,7 +37,7 @@ def encode(width, height, channels, pixels):
     rows = []
     above = bytes(stride)
     for y in range(height):
-        row = bytes(pixels[y * stride:(y + 1) * stride])
+        row = bytes(pixels[y * stride : (y + 1) * stride])
         rows.append(_filtered(row, above, channels))
         above = row
     return header(width, height, channels) + chunk(b"IDAT", zlib.compress(b"".join(rows), 9)) + chunk(b"IEND", b"")

@@ -1,4 +1,5 @@
-"""Scenes whose picture has a closed form. Diffuse surfaces have albedo 1/2, so reflected radiance is irradiance / (2 pi)."""
+"""Scenes whose picture has a closed form. Diffuse surfaces have albedo 1/2, so reflected radiance is irradiance / (2
+pi)."""
 
 import math
 
@@ -46,8 +47,8 @@ def analytic_sun():
 
 
 def analytic_quad():
-    """A square emitter of side 1 and L = 5 at height 1, facing down: irradiance is L/2 sum_i angle_i (n_i . up) over its edges
-    [Lambert's polygon formula]."""
+    """A square emitter of side 1 and L = 5 at height 1, facing down: irradiance is L/2 sum_i angle_i (n_i . up) over
+    its edges [Lambert's polygon formula]."""
     scene = _over_a_plane("analytic-quad", 6.0)
     emitter = shapes.grid((-0.5, 1.0, -0.5), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
     scene.add_object("Emitter", emitter, scene.add_material(materials.emitter("Radiance 5", (5.0, 5.0, 5.0))))
@@ -55,8 +56,8 @@ def analytic_quad():
 
 
 def analytic_sphere():
-    """A point of I = 1 W/sr at the centre of a closed sphere of radius 1: E = 1 + E/2, so L = 1 / pi, half of it indirect.
-    The sphere is a polyhedron within 6e-4 of the radius."""
+    """A point of I = 1 W/sr at the centre of a closed sphere of radius 1: E = 1 + E/2, so L = 1 / pi, half of it
+    indirect. The sphere is a polyhedron within 6e-4 of the radius."""
     scene = Builder("analytic-sphere")
     inside = faceted(shapes.sphere(1.0, 128, 64).flipped())
     scene.add_object("Inside", inside, scene.add_material(materials.lambert("Half", GREY)))
@@ -79,8 +80,8 @@ def black_box():
 
 
 def analytic_refraction():
-    """A glass slab over a plane that emits 1: seen through both faces the plane still brings 1, the rest is dark, so a pixel is the
-    slab's transmittance (1 - R) / (1 + R), with R the Fresnel reflectance at the pixel's angle."""
+    """A glass slab over a plane that emits 1: seen through both faces the plane still brings 1, the rest is dark, so
+    a pixel is the slab's transmittance (1 - R) / (1 + R), with R the Fresnel reflectance at the pixel's angle."""
     scene = Builder("analytic-refraction")
     plane = shapes.grid((-4.0, 0.0, 4.0), (8.0, 0.0, 0.0), (0.0, 0.0, -8.0))
     scene.add_object("Plane", plane, scene.add_material(materials.emitter("Radiance 1", (1.0, 1.0, 1.0))))

@@ -34,8 +34,12 @@ def metres(points):
 def ceiling_with_hole():
     """The ceiling as four pieces around the light, which is published as a hole."""
     y = 548.8
-    pieces = (((0.0, 0.0), (556.0, 227.0)), ((0.0, 332.0), (556.0, 559.2)), ((0.0, 227.0), (213.0, 332.0)),
-              ((343.0, 227.0), (556.0, 332.0)))
+    pieces = (
+        ((0.0, 0.0), (556.0, 227.0)),
+        ((0.0, 332.0), (556.0, 559.2)),
+        ((0.0, 227.0), (213.0, 332.0)),
+        ((343.0, 227.0), (556.0, 332.0)),
+    )
     mesh = shapes.Mesh()
     for (x0, z0), (x1, z1) in pieces:
         mesh.append(shapes.quad(*metres(((x1, y, z0), (x1, y, z1), (x0, y, z1), (x0, y, z0)))))
@@ -61,7 +65,9 @@ def block(name):
 
 def add_camera(scene, transform=lambda p: p):
     """The published camera: at (278, 273, -800), looking along +z, 25 mm film over a 35 mm lens."""
-    return scene.add_camera("Camera", transform((0.278, 0.273, -0.8)), transform((0.278, 0.273, 0.0)), 39.3077, near=0.001)
+    return scene.add_camera(
+        "Camera", transform((0.278, 0.273, -0.8)), transform((0.278, 0.273, 0.0)), 39.3077, near=0.001
+    )
 
 
 def wall_materials():
@@ -73,18 +79,22 @@ def wall_materials():
 
 
 def cornell(name, area_light=True, overrides=None, blocks=True, extra=()):
-    """A Cornell box. overrides: material for a wall's or block's name; extra: further (name, mesh, material, translation)."""
+    """A Cornell box. overrides: material for a wall's or block's name; extra: further (name, mesh, material,
+    translation)."""
     scene = Builder(name)
     palette = {key: scene.add_material(m) for key, m in wall_materials().items()}
     overrides = {key: scene.add_material(m) for key, m in (overrides or {}).items()}
-    parts = walls(area_light) + ([("Short block", block("Short block"), "white"), ("Tall block", block("Tall block"), "white")]
-                                 if blocks else [])
+    parts = walls(area_light) + (
+        [("Short block", block("Short block"), "white"), ("Tall block", block("Tall block"), "white")] if blocks else []
+    )
     for part, mesh, key in parts:
         scene.add_object(part, mesh, overrides.get(part, palette[key]))
     for part, mesh, material, translation in extra:
         scene.add_object(part, mesh, scene.add_material(material), translation=translation)
     if area_light:
-        scene.add_object("Light", shapes.quad(*metres(_LIGHT)), scene.add_material(materials.emitter("Light", EMISSION)))
+        scene.add_object(
+            "Light", shapes.quad(*metres(_LIGHT)), scene.add_material(materials.emitter("Light", EMISSION))
+        )
     else:
         scene.add_light("Light", "point", POINT_INTENSITY, POINT_COLOUR, POINT_POSITION)
     add_camera(scene)
@@ -101,19 +111,36 @@ def cornell_point():
 
 def cornell_glossy():
     """A glossy floor, a rough copper block and a smoother silver one under the area light."""
-    return cornell("cornell-glossy", overrides={
-        "Floor": materials.glossy("Glossy floor", WHITE, 0.3),
-        "Short block": materials.metal("Copper", (0.955, 0.638, 0.538), 0.4),
-        "Tall block": materials.metal("Silver", (0.9, 0.9, 0.9), 0.2),
-    })
+    return cornell(
+        "cornell-glossy",
+        overrides={
+            "Floor": materials.glossy("Glossy floor", WHITE, 0.3),
+            "Short block": materials.metal("Copper", (0.955, 0.638, 0.538), 0.4),
+            "Tall block": materials.metal("Silver", (0.9, 0.9, 0.9), 0.2),
+        },
+    )
 
 
 def cornell_caustic():
     """A glass and a mirror sphere under the area light."""
-    return cornell("cornell-caustic", blocks=False, extra=(
-        ("Glass sphere", shapes.sphere(0.09, 128, 64), materials.glass("Glass", 1.5, thickness=0.18), (0.165, 0.0905, 0.17)),
-        ("Mirror sphere", shapes.sphere(0.09, 128, 64), materials.metal("Mirror", (0.95, 0.95, 0.95), 0.0), (0.39, 0.0905, 0.36)),
-    ))
+    return cornell(
+        "cornell-caustic",
+        blocks=False,
+        extra=(
+            (
+                "Glass sphere",
+                shapes.sphere(0.09, 128, 64),
+                materials.glass("Glass", 1.5, thickness=0.18),
+                (0.165, 0.0905, 0.17),
+            ),
+            (
+                "Mirror sphere",
+                shapes.sphere(0.09, 128, 64),
+                materials.metal("Mirror", (0.95, 0.95, 0.95), 0.0),
+                (0.39, 0.0905, 0.36),
+            ),
+        ),
+    )
 
 
 SCENES = {

@@ -4,8 +4,21 @@ import materials
 import shapes
 import textures
 import vec
-from demo_objects import (arc_lamp, blue_vase, book, bowl, chair, coffee_table, floor_vase, lamp_dome, oranges, plant_blades,
-                          plant_pot, soil, window_frame)
+from demo_objects import (
+    arc_lamp,
+    blue_vase,
+    book,
+    bowl,
+    chair,
+    coffee_table,
+    floor_vase,
+    lamp_dome,
+    oranges,
+    plant_blades,
+    plant_pot,
+    soil,
+    window_frame,
+)
 from gltf_writer import Builder
 from mesh import merged
 from shapes import bevel_box, grid
@@ -32,12 +45,20 @@ def _materials(scene):
     rug = scene.add_texture("Rug", textures.rug(), 33071, 33071)
     painting = scene.add_texture("Painting", textures.landscape(), 33071, 33071)
 
-    lambert, glossy, metal, coated, glass = (materials.lambert, materials.glossy, materials.metal, materials.coated, materials.glass)
+    lambert, glossy, metal, coated, glass = (
+        materials.lambert,
+        materials.glossy,
+        materials.metal,
+        materials.coated,
+        materials.glass,
+    )
     textured = materials.with_textures
     white = (1.0, 1.0, 1.0)
     by_key = {
         "floor": textured(glossy("Oak floor", white, 1.0), planks, planks_rough, planks_normal, 0.8),
-        "table": textured(glossy("Walnut", (0.52, 0.40, 0.34), 0.42), planks, transform={"scale": [0.42, 0.2], "offset": [0.1, 0.31]}),
+        "table": textured(
+            glossy("Walnut", (0.52, 0.40, 0.34), 0.42), planks, transform={"scale": [0.42, 0.2], "offset": [0.1, 0.31]}
+        ),
         "chair": glossy("Painted wood", (0.045, 0.105, 0.10), 0.32),
         "wall": lambert("Warm plaster", (0.76, 0.71, 0.63)),
         "accent": lambert("Teal wall", (0.075, 0.235, 0.25)),
@@ -82,8 +103,10 @@ def _room(scene, material):
     scene.add_object("Right wall", grid((RIGHT, 0.0, BACK), z, y), material["wall"])
     tall, thick = 0.11, 0.018
     along_back = bevel_box((wide, tall, thick), 0.006, 2).moved((0.5 * (LEFT + RIGHT), 0.5 * tall, BACK + 0.5 * thick))
-    sides = [bevel_box((thick, tall, deep), 0.006, 2).moved((side, 0.5 * tall, 0.5 * (BACK + FRONT)))
-             for side in (LEFT + 0.5 * thick, RIGHT - 0.5 * thick)]
+    sides = [
+        bevel_box((thick, tall, deep), 0.006, 2).moved((side, 0.5 * tall, 0.5 * (BACK + FRONT)))
+        for side in (LEFT + 0.5 * thick, RIGHT - 0.5 * thick)
+    ]
     scene.add_object("Skirting", merged([along_back] + sides), material["trim"])
 
 
@@ -99,7 +122,9 @@ def _picture(scene, material):
     place = (-0.62, 1.42, BACK)
     canvas = grid((-0.20, -0.24, 0.012), (0.40, 0.0, 0.0), (0.0, 0.48, 0.0))
     mat = grid((-0.28, -0.32, 0.010), (0.56, 0.0, 0.0), (0.0, 0.64, 0.0))
-    scene.add_object("Picture frame", shapes.picture_frame(0.56, 0.64, 0.03, 0.03), material["frame"], translation=place)
+    scene.add_object(
+        "Picture frame", shapes.picture_frame(0.56, 0.64, 0.03, 0.03), material["frame"], translation=place
+    )
     scene.add_object("Painting", [(canvas, material["painting"]), (mat, material["mat"])], translation=place)
 
 
@@ -130,9 +155,11 @@ def _on_the_table(scene, material):
     put("Bowl", bowl(), "celadon", 0.06, 0.12)
     put("Oranges", oranges(), "orange", 0.06, 0.12)
     lift = 0.0
-    for name, size, key, degrees in (("Navy book", (0.19, 0.27, 0.034), "cover navy", 14.0),
-                                     ("Cream book", (0.17, 0.25, 0.026), "cover cream", 4.0),
-                                     ("Rust book", (0.15, 0.215, 0.022), "cover rust", 24.0)):
+    for name, size, key, degrees in (
+        ("Navy book", (0.19, 0.27, 0.034), "cover navy", 14.0),
+        ("Cream book", (0.17, 0.25, 0.026), "cover cream", 4.0),
+        ("Rust book", (0.15, 0.215, 0.022), "cover rust", 24.0),
+    ):
         cover, pages = book(*size)
         put(name, [(cover, material[key]), (pages, material["paper"])], None, 0.38, -0.02, degrees, lift)
         lift += size[2]

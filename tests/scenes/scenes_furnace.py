@@ -1,4 +1,5 @@
-"""White furnaces: a body under uniform radiance 1. Bodies are faceted, so that no shading normal spoils the closed form.
+"""White furnaces: a body under uniform radiance 1. Bodies are faceted, so that no shading normal spoils the closed
+form.
 
 The surroundings are a closed emitter of radiance 1; whatever its tessellation, every ray that reaches it brings 1.
 """

@@ -1,4 +1,5 @@
-"""The Cornell box under a point light, made awkward in one way each. Unless a scene says otherwise its picture is cornell-point's."""
+"""The Cornell box under a point light, made awkward in one way each. Unless a scene says otherwise its picture is
+cornell-point's."""
 
 import functools
 import math
@@ -8,7 +9,16 @@ import shapes
 import vec
 from gltf_writer import Builder
 from mesh import Mesh, merged
-from scenes_cornell import (EMISSION, POINT_COLOUR, POINT_INTENSITY, POINT_POSITION, add_camera, block, wall_materials, walls)
+from scenes_cornell import (
+    EMISSION,
+    POINT_COLOUR,
+    POINT_INTENSITY,
+    POINT_POSITION,
+    add_camera,
+    block,
+    wall_materials,
+    walls,
+)
 from textures import Random
 
 FAR = (1.0e5, 1.0e5, 1.0e5)
@@ -19,10 +29,18 @@ def objects():
     return walls(False) + [("Short block", block("Short block"), "white"), ("Tall block", block("Tall block"), "white")]
 
 
-def cornell(name, change=lambda mesh: mesh, overrides=None, point=lambda p: p, intensity=POINT_INTENSITY, root=None, extra=None,
-            camera_up=vec.Y, near=0.001):
-    """cornell-point with change applied to every mesh and point to every position outside meshes. root: a transform of a node over
-    everything; extra: called with the builder, returns further nodes."""
+def cornell(
+    name,
+    change=lambda mesh: mesh,
+    overrides=None,
+    point=lambda p: p,
+    intensity=POINT_INTENSITY,
+    root=None,
+    extra=None,
+    near=0.001,
+):
+    """cornell-point with change applied to every mesh and point to every position outside meshes. root: a transform
+    of a node over everything; extra: called with the builder, returns further nodes."""
     scene = Builder(name)
     palette = {key: scene.add_material(m) for key, m in wall_materials().items()}
     overrides = {key: scene.add_material(m) for key, m in (overrides or {}).items()}
@@ -30,7 +48,7 @@ def cornell(name, change=lambda mesh: mesh, overrides=None, point=lambda p: p, i
     nodes += extra(scene) if extra else []
     nodes.append(scene.add_light("Light", "point", intensity, POINT_COLOUR, point(POINT_POSITION)))
     eye, target = point((0.278, 0.273, -0.8)), point((0.278, 0.273, 0.0))
-    nodes.append(scene.add_camera("Camera", eye, target, 39.3077, near=near, up=camera_up))
+    nodes.append(scene.add_camera("Camera", eye, target, 39.3077, near=near))
     if root:
         scene.add_node("Root", children=nodes, **root)
     return scene.glb()
@@ -38,20 +56,37 @@ def cornell(name, change=lambda mesh: mesh, overrides=None, point=lambda p: p, i
 
 def scaled(name, factor):
     """The box factor times as large, its light factor^2 times as strong: the same picture."""
-    return cornell(name, lambda m: m.moved(scale=factor), point=lambda p: vec.scale(p, factor),
-                   intensity=POINT_INTENSITY * factor * factor, near=0.001 * factor)
+    return cornell(
+        name,
+        lambda m: m.moved(scale=factor),
+        point=lambda p: vec.scale(p, factor),
+        intensity=POINT_INTENSITY * factor * factor,
+        near=0.001 * factor,
+    )
 
 
 def far_baked():
-    """A ten times larger box 1e5 m away in every axis, in its vertices: single precision leaves steps of 8 mm, 1/700 of the box."""
-    return cornell("hard-far-baked", lambda m: m.moved(FAR, scale=10.0), point=lambda p: vec.add(vec.scale(p, 10.0), FAR),
-                   intensity=100.0 * POINT_INTENSITY, near=0.01)
+    """A ten times larger box 1e5 m away in every axis, in its vertices: single precision leaves steps of 8 mm, 1/700
+    of the box."""
+    return cornell(
+        "hard-far-baked",
+        lambda m: m.moved(FAR, scale=10.0),
+        point=lambda p: vec.add(vec.scale(p, 10.0), FAR),
+        intensity=100.0 * POINT_INTENSITY,
+        near=0.01,
+    )
 
 
 def far_node():
     """A ten times larger box 1e5 m away by its root node, camera and light included."""
-    return cornell("hard-far-node", lambda m: m.moved(scale=10.0), point=lambda p: vec.scale(p, 10.0),
-                   intensity=100.0 * POINT_INTENSITY, near=0.01, root={"translation": FAR})
+    return cornell(
+        "hard-far-node",
+        lambda m: m.moved(scale=10.0),
+        point=lambda p: vec.scale(p, 10.0),
+        intensity=100.0 * POINT_INTENSITY,
+        near=0.01,
+        root={"translation": FAR},
+    )
 
 
 def rotated():
@@ -61,6 +96,7 @@ def rotated():
 
 def mirrored():
     """Vertices mirrored in x and mirrored back by a node of negative determinant; winding follows the vertices."""
+
     def mirror(mesh):
         out = mesh.flipped()
         out.positions = [(-p[0], p[1], p[2]) for p in out.positions]
@@ -93,7 +129,7 @@ def permuted():
         for old in order:
             out.vertex(mesh.positions[old], mesh.normals[old], mesh.uvs[old])
         for t in shuffled(mesh.triangle_count):
-            a, b, c = (place[i] for i in mesh.indices[3 * t:3 * t + 3])
+            a, b, c = (place[i] for i in mesh.indices[3 * t : 3 * t + 3])
             out.indices += (b, c, a)
         return out
 
@@ -102,6 +138,7 @@ def permuted():
 
 def doubled_vertices():
     """Every triangle with its own corners, and every vertex stored twice."""
+
     def double(mesh):
         out = Mesh()
         for k in mesh.indices:
@@ -118,7 +155,9 @@ def coplanar():
 
 
 def degenerate():
-    """Zero-area triangles (repeated corners, collinear corners, a single point) and needles 1e-7 m wide in every mesh."""
+    """Zero-area triangles (repeated corners, collinear corners, a single point) and needles 1e-7 m wide in every
+    mesh."""
+
     def degrade(mesh):
         out = merged([mesh])
         a, b, c = mesh.indices[:3]
@@ -133,7 +172,8 @@ def degenerate():
 
 
 def bad_normals():
-    """Zero, unnormalised, tiny and huge normals: a zero normal stands for the face's own, the others for their direction."""
+    """Zero, unnormalised, tiny and huge normals: a zero normal stands for the face's own, the others for their
+    direction."""
     factors = (0.0, 3.0, 1.0e-12, 1.0e12, 1.0)
 
     def spoil(mesh):
@@ -145,7 +185,8 @@ def bad_normals():
 
 
 def tiny_light():
-    """A sphere of radius 0.5 mm that sends 1e6 W/sr, in place of the point: a picture like cornell-point's, 4e6 times brighter."""
+    """A sphere of radius 0.5 mm that sends 1e6 W/sr, in place of the point: a picture like cornell-point's, 4e6
+    times brighter."""
     radius, intensity = 0.5e-3, 1.0e6
     radiance = intensity / (math.pi * radius * radius)
     scene = Builder("hard-tiny-light")
@@ -153,7 +194,12 @@ def tiny_light():
     for part, mesh, key in objects():
         scene.add_object(part, mesh, palette[key])
     tint = vec.scale(EMISSION, radiance / max(EMISSION))
-    scene.add_object("Light", shapes.sphere(radius, 16, 8), scene.add_material(materials.emitter("Light", tint)), translation=POINT_POSITION)
+    scene.add_object(
+        "Light",
+        shapes.sphere(radius, 16, 8),
+        scene.add_material(materials.emitter("Light", tint)),
+        translation=POINT_POSITION,
+    )
     add_camera(scene)
     return scene.glb()
 
@@ -166,18 +212,24 @@ def smooth_metal(name, roughness):
 
 def _sphere_in_the_box(material, position):
     def add(scene):
-        return [scene.add_object("Sphere", shapes.sphere(0.06, 64, 32), scene.add_material(material), translation=position)]
+        return [
+            scene.add_object("Sphere", shapes.sphere(0.06, 64, 32), scene.add_material(material), translation=position)
+        ]
+
     return add
 
 
 def ior_1():
-    """A sphere of index 1 without absorption hangs over the short block: it bends and reflects nothing, so light passes as if it were
-    not there (shadow rays that stop at transmissive surfaces darken its shadow)."""
-    return cornell("hard-ior-1", extra=_sphere_in_the_box(materials.glass("Nothing", 1.0, thickness=0.12), (0.186, 0.26, 0.168)))
+    """A sphere of index 1 without absorption hangs over the short block: it bends and reflects nothing, so light
+    passes as if it were not there (shadow rays that stop at transmissive surfaces darken its shadow)."""
+    return cornell(
+        "hard-ior-1", extra=_sphere_in_the_box(materials.glass("Nothing", 1.0, thickness=0.12), (0.186, 0.26, 0.168))
+    )
 
 
 def touching():
     """A glass sphere that touches the floor in a point, and a block that stands exactly on the short block's top."""
+
     def add(scene):
         grey = scene.add_material(materials.lambert("Grey", (0.4, 0.4, 0.4)))
         cube = shapes.box((0.08, 0.08, 0.08))

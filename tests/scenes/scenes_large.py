@@ -14,8 +14,11 @@ SIDE = 708  # cells along an edge: 2 * 708^2 = 1,002,528 triangles
 def _terrain_arrays():
     """Positions, normals and indices of a displaced square of side 10 as flat arrays."""
     points = SIDE + 1
-    layers = [(0.9, noise(points, points, 7, 7, 101)), (0.22, noise(points, points, 29, 29, 102)),
-              (0.05, noise(points, points, 113, 113, 103))]
+    layers = [
+        (0.9, noise(points, points, 7, 7, 101)),
+        (0.22, noise(points, points, 29, 29, 102)),
+        (0.05, noise(points, points, 113, 113, 103)),
+    ]
     heights = [[sum(weight * layer[y][x] for weight, layer in layers) for x in range(points)] for y in range(points)]
     step = 10.0 / SIDE
     positions, normals, indices = array.array("f"), array.array("f"), array.array("I")
@@ -37,7 +40,10 @@ def million_mesh():
     scene = Builder("million-mesh")
     rock = scene.add_material(materials.lambert("Rock", (0.50, 0.42, 0.34)))
     positions, normals, indices = _terrain_arrays()
-    attributes = {"POSITION": scene.add_accessor(positions, "VEC3", FLOAT, bounds=True), "NORMAL": scene.add_accessor(normals, "VEC3")}
+    attributes = {
+        "POSITION": scene.add_accessor(positions, "VEC3", FLOAT, bounds=True),
+        "NORMAL": scene.add_accessor(normals, "VEC3"),
+    }
     primitive = {"attributes": attributes, "indices": scene.add_indices(indices, len(positions) // 3), "material": rock}
     scene.add_node("Terrain", mesh=scene.add("meshes", {"name": "Terrain", "primitives": [primitive]}))
     scene.add_light("Sun", "directional", 5.0, (1.0, 0.92, 0.8), direction=(-0.7, -0.5, -0.3))
@@ -58,7 +64,9 @@ def million_instances():
         place = (0.7 * (k % 10 - 4.5), 0.4 + 0.62 * (k // 100), 0.7 * (k // 10 % 10 - 4.5))
         axis = (random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0))
         turn = vec.quaternion(axis, random.uniform(0.0, 360.0))
-        scene.add_node(f"Knot {k + 1}", mesh=knot, translation=place, rotation=turn, scale=[random.uniform(0.8, 1.2)] * 3)
+        scene.add_node(
+            f"Knot {k + 1}", mesh=knot, translation=place, rotation=turn, scale=[random.uniform(0.8, 1.2)] * 3
+        )
     panel = scene.add_material(materials.emitter("Panel", (8.0, 8.0, 8.0)))
     scene.add_object("Panel", shapes.grid((-4.0, 9.0, -4.0), (8.0, 0.0, 0.0), (0.0, 0.0, 8.0)), panel)
     scene.add_light("Lamp", "point", 40.0, (1.0, 0.8, 0.6), (5.0, 6.0, 6.0))

@@ -1,4 +1,5 @@
-"""Scenes that are hard in one known way each: many scales of highlight, light through a gap, sun between columns, thin things."""
+"""Scenes that are hard in one known way each: many scales of highlight, light through a gap, sun between columns,
+thin things."""
 
 import math
 
@@ -13,20 +14,27 @@ from textures import Random
 
 
 def room(scene, low, high, colours):
-    """Six inward walls between two corners. colours: material index of left, right, floor, ceiling, back, front; None leaves one out."""
+    """Six inward walls between two corners. colours: material index of left, right, floor, ceiling, back, front;
+    None leaves one out."""
     (x0, y0, z0), (x1, y1, z1) = low, high
     wide, tall, deep = (x1 - x0, 0.0, 0.0), (0.0, y1 - y0, 0.0), (0.0, 0.0, z1 - z0)
     back = vec.scale(deep, -1.0)
-    sides = (("Left wall", (x0, y0, z1), back, tall), ("Right wall", (x1, y0, z0), deep, tall), ("Floor", (x0, y0, z1), wide, back),
-             ("Ceiling", (x0, y1, z0), wide, deep), ("Back wall", (x0, y0, z0), wide, tall),
-             ("Front wall", (x1, y0, z1), vec.scale(wide, -1.0), tall))
+    sides = (
+        ("Left wall", (x0, y0, z1), back, tall),
+        ("Right wall", (x1, y0, z0), deep, tall),
+        ("Floor", (x0, y0, z1), wide, back),
+        ("Ceiling", (x0, y1, z0), wide, deep),
+        ("Back wall", (x0, y0, z0), wide, tall),
+        ("Front wall", (x1, y0, z1), vec.scale(wide, -1.0), tall),
+    )
     for (name, origin, u, v), material in zip(sides, colours):
         if material is not None:
             scene.add_object(name, grid(origin, u, v), material)
 
 
 def veach_mis():
-    """Four plates from smooth to rough mirror four spheres of equal power, from small and bright to large and dim [Veach 1997, 9.2.2]."""
+    """Four plates from smooth to rough mirror four spheres of equal power, from small and bright to large and dim
+    [Veach 1997, 9.2.2]."""
     scene = Builder("veach-mis")
     grey = scene.add_material(materials.lambert("Grey", (0.3, 0.3, 0.3)))
     scene.add_object("Floor", grid((-6.0, -1.6, 5.0), (12.0, 0.0, 0.0), (0.0, 0.0, -9.0)), grey)
@@ -38,10 +46,16 @@ def veach_mis():
         normal = vec.normalize(vec.add(vec.normalize(vec.sub(eye, centre)), vec.normalize(vec.sub(lights, centre))))
         lean = math.degrees(math.atan2(normal[2], normal[1]))
         metal = scene.add_material(materials.metal(f"Plate roughness {roughness}", (0.6, 0.6, 0.6), roughness))
-        scene.add_object(f"Plate {k + 1}", shapes.box((4.4, 0.04, 0.72)), metal, translation=centre, rotation=vec.quaternion(vec.X, lean))
+        scene.add_object(
+            f"Plate {k + 1}",
+            shapes.box((4.4, 0.04, 0.72)),
+            metal,
+            translation=centre,
+            rotation=vec.quaternion(vec.X, lean),
+        )
     tints = ((1.0, 0.62, 0.42), (1.0, 0.9, 0.5), (0.55, 1.0, 0.6), (0.5, 0.7, 1.0))
     for k, (radius, tint) in enumerate(zip((0.035, 0.10, 0.24, 0.42), tints)):
-        emitter = scene.add_material(materials.emitter(f"Emitter {k + 1}", vec.scale(tint, 0.8 / radius ** 2)))
+        emitter = scene.add_material(materials.emitter(f"Emitter {k + 1}", vec.scale(tint, 0.8 / radius**2)))
         centre = (-1.8 + 1.2 * k, lights[1], lights[2])
         scene.add_object(f"Sphere {k + 1}", shapes.sphere(radius, 32, 16), emitter, translation=centre)
     fill = scene.add_material(materials.emitter("Fill light", (6.0, 6.0, 6.0)))
@@ -55,7 +69,9 @@ def _wall_with_door(x, z0, z1, height, door_z, door_width, door_height):
     end = door_z + door_width
     up = (0.0, height, 0.0)
     over = grid((x, door_height, end), (0.0, 0.0, -door_width), (0.0, height - door_height, 0.0))
-    return merged([grid((x, 0.0, door_z), (0.0, 0.0, z0 - door_z), up), grid((x, 0.0, z1), (0.0, 0.0, end - z1), up), over])
+    return merged(
+        [grid((x, 0.0, door_z), (0.0, 0.0, z0 - door_z), up), grid((x, 0.0, z1), (0.0, 0.0, end - z1), up), over]
+    )
 
 
 def ajar_door():
@@ -67,7 +83,9 @@ def ajar_door():
     room(scene, (-2.0, 0.0, -2.0), (2.0, 2.5, 3.0), (None, white, wood, white, white, blue))
     hinge, width, height, ajar = -1.1, 0.9, 2.05, vec.quaternion(vec.Y, 30.0)
     scene.add_object("Left wall", _wall_with_door(-2.0, -2.0, 3.0, 2.5, hinge, width, height), white)
-    scene.add_object("Left wall, far side", _wall_with_door(-2.001, -4.0, 3.0, 2.5, hinge, width, height).flipped(), white)
+    scene.add_object(
+        "Left wall, far side", _wall_with_door(-2.001, -4.0, 3.0, 2.5, hinge, width, height).flipped(), white
+    )
     room(scene, (-5.0, 0.0, -4.0), (-2.001, 2.5, 3.0), (white, None, wood, white, white, white))
     slab = bevel_box((0.04, height - 0.01, width - 0.005), 0.004, 2).moved((0.0, 0.5 * height, 0.5 * width))
     painted = scene.add_material(materials.glossy("Door paint", (0.55, 0.53, 0.48), 0.3))
@@ -126,12 +144,16 @@ def thin_furniture():
     white = scene.add_material(materials.lambert("White", (0.74, 0.73, 0.70)))
     floor = scene.add_material(materials.lambert("Floor", (0.42, 0.33, 0.24)))
     room(scene, (-2.4, 0.0, -1.8), (2.4, 2.6, 3.4), (white, white, floor, white, white, white))
-    seat = [scene.add_material(materials.glossy(name, colour, 0.35)) for name, colour in
-            (("Yellow", (0.75, 0.48, 0.06)), ("Green", (0.10, 0.32, 0.20)), ("Red", (0.5, 0.07, 0.05)))]
+    seat = [
+        scene.add_material(materials.glossy(name, colour, 0.35))
+        for name, colour in (("Yellow", (0.75, 0.48, 0.06)), ("Green", (0.10, 0.32, 0.20)), ("Red", (0.5, 0.07, 0.05)))
+    ]
     chairs = [scene.add_mesh(f"Chair {k + 1}", [(chair(), material)]) for k, material in enumerate(seat)]
     places = ((-1.3, 0.1, 50.0), (-0.45, -0.9, 15.0), (0.55, -0.95, -20.0), (1.35, 0.0, -70.0), (0.1, 0.95, 175.0))
     for k, (x, z, turn) in enumerate(places):
-        scene.add_node(f"Chair {k + 1}", mesh=chairs[k % 3], translation=(x, 0.0, z), rotation=vec.quaternion(vec.Y, turn))
+        scene.add_node(
+            f"Chair {k + 1}", mesh=chairs[k % 3], translation=(x, 0.0, z), rotation=vec.quaternion(vec.Y, turn)
+        )
     walnut = scene.add_material(materials.glossy("Walnut", (0.28, 0.15, 0.08), 0.35))
     scene.add_object("Table", coffee_table(1.2, 0.75, 0.72), walnut)
     steel = scene.add_material(materials.metal("Steel wire", (0.6, 0.6, 0.6), 0.3))
@@ -167,7 +189,9 @@ def many_lights():
         y, size = random.uniform(2.6, 4.7), random.uniform(0.03, 0.07)
         lamps[k % len(tints)].append(grid((x, y, z), (size, 0.0, 0.0), (0.0, 0.0, size)))
     for k, (mesh, tint) in enumerate(zip(lamps, tints)):
-        scene.add_object(f"Lamps {k + 1}", mesh, scene.add_material(materials.emitter(f"Lamps {k + 1}", vec.scale(tint, 40.0))))
+        scene.add_object(
+            f"Lamps {k + 1}", mesh, scene.add_material(materials.emitter(f"Lamps {k + 1}", vec.scale(tint, 40.0)))
+        )
     scene.add_camera("Camera", (0.8, 1.7, 7.2), (0.0, 1.9, 0.0), 55.0)
     return scene.glb()
 

@@ -55,8 +55,14 @@ def box(size, uv_per_metre=1.0):
     for normal, u, v in _FACES:
         extent_u, extent_v = abs(vec.dot(half, u)), abs(vec.dot(half, v))
         corner = vec.sub(vec.mul(normal, half), vec.add(vec.scale(u, extent_u), vec.scale(v, extent_v)))
-        mesh.append(grid(corner, vec.scale(u, 2.0 * extent_u), vec.scale(v, 2.0 * extent_v),
-                         uv_scale=(2.0 * extent_u * uv_per_metre, 2.0 * extent_v * uv_per_metre)))
+        mesh.append(
+            grid(
+                corner,
+                vec.scale(u, 2.0 * extent_u),
+                vec.scale(v, 2.0 * extent_v),
+                uv_scale=(2.0 * extent_u * uv_per_metre, 2.0 * extent_v * uv_per_metre),
+            )
+        )
     return mesh
 
 
@@ -94,9 +100,18 @@ def catmull_rom(points, steps):
         p3 = points[min(i + 2, len(points) - 1)]
         for k in range(steps):
             t = k / steps
-            out.append(tuple(
-                0.5 * (2.0 * p1[c] + (p2[c] - p0[c]) * t + (2.0 * p0[c] - 5.0 * p1[c] + 4.0 * p2[c] - p3[c]) * t * t
-                       + (3.0 * p1[c] - p0[c] - 3.0 * p2[c] + p3[c]) * t * t * t) for c in range(2)))
+            out.append(
+                tuple(
+                    0.5
+                    * (
+                        2.0 * p1[c]
+                        + (p2[c] - p0[c]) * t
+                        + (2.0 * p0[c] - 5.0 * p1[c] + 4.0 * p2[c] - p3[c]) * t * t
+                        + (3.0 * p1[c] - p0[c] - 3.0 * p2[c] + p3[c]) * t * t * t
+                    )
+                    for c in range(2)
+                )
+            )
     return [(max(r, 0.0), y) for r, y in out] + [points[-1]]
 
 
@@ -128,7 +143,9 @@ def lathe(runs, segments=48, uv_scale=(1.0, 1.0)):
 
 def sphere(radius, segments=48, rings=24):
     """A sphere about the origin; vertices lie on it, so its area and volume are slightly smaller."""
-    profile = [(radius * math.sin(math.pi * k / rings), -radius * math.cos(math.pi * k / rings)) for k in range(rings + 1)]
+    profile = [
+        (radius * math.sin(math.pi * k / rings), -radius * math.cos(math.pi * k / rings)) for k in range(rings + 1)
+    ]
     profile[0], profile[-1] = (0.0, -radius), (0.0, radius)
     mesh = lathe([profile], segments)
     mesh.normals = [vec.scale(p, 1.0 / radius) for p in mesh.positions]
@@ -138,7 +155,9 @@ def sphere(radius, segments=48, rings=24):
 def cylinder(radius, height, segments=32, top_radius=None):
     """A capped cylinder or cone frustum standing on y = 0."""
     top = radius if top_radius is None else top_radius
-    return lathe([[(0.0, 0.0), (radius, 0.0)], [(radius, 0.0), (top, height)], [(top, height), (0.0, height)]], segments)
+    return lathe(
+        [[(0.0, 0.0), (radius, 0.0)], [(radius, 0.0), (top, height)], [(top, height), (0.0, height)]], segments
+    )
 
 
 def tube(path, radius, segments=16):
@@ -173,7 +192,8 @@ def tube(path, radius, segments=16):
 
 
 def torus_knot(p, q, ring_radius, coil_radius, tube_radius, steps=240, segments=20):
-    """A tube along the (p, q) knot on a torus about y; its frame is the torus' own normal, so it closes without a seam."""
+    """A tube along the (p, q) knot on a torus about y; its frame is the torus' own normal, so it closes without a
+    seam."""
     mesh = Mesh()
 
     def core(t):
@@ -203,8 +223,15 @@ def torus_knot(p, q, ring_radius, coil_radius, tube_radius, steps=240, segments=
 
 def picture_frame(width, height, border, depth):
     """A mitred frame around a width x height opening in the plane z = 0, facing +z, its back at z = 0."""
-    profile = ((0.0, 0.0), (0.0, 0.55 * depth), (0.3 * border, 0.6 * depth), (0.55 * border, depth), (0.9 * border, depth),
-               (border, 0.85 * depth), (border, 0.0))
+    profile = (
+        (0.0, 0.0),
+        (0.0, 0.55 * depth),
+        (0.3 * border, 0.6 * depth),
+        (0.55 * border, depth),
+        (0.9 * border, depth),
+        (border, 0.85 * depth),
+        (border, 0.0),
+    )
     corners = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
 
     def at(corner, outward, z):

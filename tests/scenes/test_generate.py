@@ -1,4 +1,5 @@
-"""Tests of the scene generator: same bytes every time, sound files, the expected triangles, a camera and a light in each."""
+"""Tests of the scene generator: same bytes every time, sound files, the expected triangles, a camera and a light in
+each."""
 
 import array
 import hashlib
@@ -45,8 +46,8 @@ class Glb:
         magic, version, size = struct.unpack_from("<4sII", data, 0)
         assert (magic, version, size) == (b"glTF", 2, len(data))
         json_size = struct.unpack_from("<I", data, 12)[0]
-        self.document = json.loads(data[20:20 + json_size])
-        self.binary = data[28 + json_size:]
+        self.document = json.loads(data[20 : 20 + json_size])
+        self.binary = data[28 + json_size :]
 
     def accessor(self, index):
         """The numbers of a tightly packed accessor."""
@@ -54,7 +55,7 @@ class Glb:
         view = self.document["bufferViews"][accessor["bufferView"]]
         numbers = array.array(TYPECODE[accessor["componentType"]])
         start = view["byteOffset"] + accessor.get("byteOffset", 0)
-        numbers.frombytes(self.binary[start:start + accessor["count"] * WIDTH[accessor["type"]] * numbers.itemsize])
+        numbers.frombytes(self.binary[start : start + accessor["count"] * WIDTH[accessor["type"]] * numbers.itemsize])
         return numbers
 
     def primitives(self):
@@ -63,14 +64,16 @@ class Glb:
                 yield mesh["name"], primitive
 
     def triangle_count(self):
-        return sum(self.document["accessors"][p["indices"]]["count"] // 3 for _, p in self.primitives() if "indices" in p)
+        return sum(
+            self.document["accessors"][p["indices"]]["count"] // 3 for _, p in self.primitives() if "indices" in p
+        )
 
     def has_emitter(self):
         return any(sum(m.get("emissiveFactor", [0.0])) > 0.0 for m in self.document.get("materials", []))
 
 
 def corners(numbers, index):
-    return tuple(numbers[3 * index:3 * index + 3])
+    return tuple(numbers[3 * index : 3 * index + 3])
 
 
 class GeneratedScenes(unittest.TestCase):
@@ -96,7 +99,9 @@ class GeneratedScenes(unittest.TestCase):
             nodes = file.document["nodes"]
             with self.subTest(name):
                 self.assertEqual(sum("camera" in node for node in nodes), 1)
-                self.assertTrue(file.has_emitter() or any("KHR_lights_punctual" in n.get("extensions", {}) for n in nodes))
+                self.assertTrue(
+                    file.has_emitter() or any("KHR_lights_punctual" in n.get("extensions", {}) for n in nodes)
+                )
 
     def test_everything_has_a_name(self):
         for name, file in self.files.items():
@@ -122,9 +127,11 @@ class GeneratedScenes(unittest.TestCase):
                 normals = file.accessor(primitive["attributes"]["NORMAL"])
                 indices = file.accessor(primitive["indices"])
                 for t in range(0, len(indices), 3):
-                    a, b, c = (corners(positions, k) for k in indices[t:t + 3])
+                    a, b, c = (corners(positions, k) for k in indices[t : t + 3])
                     face = vec.cross(vec.sub(b, a), vec.sub(c, a))
-                    self.assertGreater(vec.dot(face, corners(normals, indices[t])), 0.0, f"{name}: {mesh}, triangle {t // 3}")
+                    self.assertGreater(
+                        vec.dot(face, corners(normals, indices[t])), 0.0, f"{name}: {mesh}, triangle {t // 3}"
+                    )
 
     def test_demo_shows_what_the_renderer_can(self):
         demo = self.files["demo"].document
@@ -148,10 +155,10 @@ class Pictures(unittest.TestCase):
         pixels = bytes((37 * k * k + 11 * k) & 255 for k in range(width * height * 3))
         data = png.encode(width, height, 3, pixels)
         start = data.index(b"IDAT") + 4
-        rows = zlib.decompress(data[start:start + struct.unpack_from(">I", data, start - 8)[0]])
+        rows = zlib.decompress(data[start : start + struct.unpack_from(">I", data, start - 8)[0]])
         decoded, above = b"", bytes(3 * width)
         for y in range(height):
-            kind, row = rows[y * (3 * width + 1)], bytearray(rows[y * (3 * width + 1) + 1:(y + 1) * (3 * width + 1)])
+            kind, row = rows[y * (3 * width + 1)], bytearray(rows[y * (3 * width + 1) + 1 : (y + 1) * (3 * width + 1)])
             for k in range(3 * width):
                 left = row[k - 3] if k >= 3 else 0
                 row[k] = (row[k] + (0, left, above[k])[kind]) & 255

@@ -19,7 +19,7 @@ class Random:
         return z ^ (z >> 31)
 
     def uniform(self, low=0.0, high=1.0):
-        return low + (high - low) * (self.bits() >> 11) * 2.0 ** -53
+        return low + (high - low) * (self.bits() >> 11) * 2.0**-53
 
 
 def noise(width, height, cells_x, cells_y, seed):
@@ -73,7 +73,8 @@ def normal_map(heights, strength):
 
 
 def wood_floor(width=1024, height=512, planks=8):
-    """Oak planks along u: base colour, metallic-roughness and normal maps. One tile is planks wide, two plank lengths long."""
+    """Oak planks along u: base colour, metallic-roughness and normal maps. One tile is planks wide, two plank
+    lengths long."""
     random = Random(11)
     cuts = [int(random.uniform(0.0, width / 2)) for _ in range(planks)]
     tones = [[random.uniform(-1.0, 1.0) for _ in range(2)] for _ in range(planks)]
@@ -139,9 +140,13 @@ def rug(width=512, height=384):
 def landscape(width=320, height=384):
     """The painting on the wall: a low sun over folded hills."""
     grain = noise(width, height, 80, 120, 51)
-    hills = ((0.50, 0.050, 1.3, 0.4, (0.86, 0.58, 0.42)), (0.60, 0.060, 1.9, 2.1, (0.72, 0.40, 0.32)),
-             (0.70, 0.055, 1.5, 4.0, (0.42, 0.31, 0.36)), (0.81, 0.050, 2.3, 0.9, (0.18, 0.27, 0.34)),
-             (0.92, 0.040, 1.7, 5.2, (0.07, 0.16, 0.22)))
+    hills = (
+        (0.50, 0.050, 1.3, 0.4, (0.86, 0.58, 0.42)),
+        (0.60, 0.060, 1.9, 2.1, (0.72, 0.40, 0.32)),
+        (0.70, 0.055, 1.5, 4.0, (0.42, 0.31, 0.36)),
+        (0.81, 0.050, 2.3, 0.9, (0.18, 0.27, 0.34)),
+        (0.92, 0.040, 1.7, 5.2, (0.07, 0.16, 0.22)),
+    )
 
     def colour(x, y):
         u, v = x / width, y / height
@@ -149,7 +154,9 @@ def landscape(width=320, height=384):
         if math.hypot((u - 0.62) * width, (v - 0.30) * height) < 0.13 * width:
             out = (0.84, 0.32, 0.18)
         for level, swing, waves, phase, hill in hills:
-            if v > level + swing * (math.sin(waves * 6.283 * u + phase) + 0.35 * math.sin(2.7 * waves * 6.283 * u + 2.0 * phase)):
+            if v > level + swing * (
+                math.sin(waves * 6.283 * u + phase) + 0.35 * math.sin(2.7 * waves * 6.283 * u + 2.0 * phase)
+            ):
                 out = hill
         return tuple(c * (1.0 + 0.06 * grain[y][x]) for c in out)
 
@@ -174,7 +181,9 @@ def leaf(size=256):
 
 def checker(width, height, cells_x, cells_y, first, second):
     """A chessboard of two colours."""
-    return picture(width, height, lambda x, y: first if (x * cells_x // width + y * cells_y // height) % 2 == 0 else second)
+    return picture(
+        width, height, lambda x, y: first if (x * cells_x // width + y * cells_y // height) % 2 == 0 else second
+    )
 
 
 def letter_f(size=64):
@@ -183,7 +192,14 @@ def letter_f(size=64):
 
     def colour(x, y):
         u, v = x / size, y / size
-        inside = 0.3 <= u < 0.42 and 0.2 <= v < 0.8 or 0.3 <= u < 0.7 and 0.2 <= v < 0.32 or 0.3 <= u < 0.6 and 0.45 <= v < 0.56
+        inside = (
+            0.3 <= u < 0.42
+            and 0.2 <= v < 0.8
+            or 0.3 <= u < 0.7
+            and 0.2 <= v < 0.32
+            or 0.3 <= u < 0.6
+            and 0.45 <= v < 0.56
+        )
         return (0.05, 0.05, 0.05) if inside else quadrants[(u >= 0.5) + 2 * (v >= 0.5)]
 
     return picture(size, size, colour)

@@ -1,4 +1,5 @@
-"""Vectors as tuples of three floats, rotations as row-major 3x3 tuples or glTF quaternions (x, y, z, w). Right-handed, y up."""
+"""Vectors as tuples of three floats, rotations as row-major 3x3 tuples or glTF quaternions (x, y, z, w). Right-
+handed, y up."""
 
 import math
 
@@ -48,18 +49,6 @@ def quaternion(axis, degrees):
     half = math.radians(degrees) * 0.5
     x, y, z = scale(normalize(axis), math.sin(half))
     return (x, y, z, math.cos(half))
-
-
-def quaternion_product(a, b):
-    """The rotation that applies b, then a."""
-    ax, ay, az, aw = a
-    bx, by, bz, bw = b
-    return (
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-        aw * bw - ax * bx - ay * by - az * bz,
-    )
 
 
 def rotate(q, v):
