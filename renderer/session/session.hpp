@@ -3,6 +3,7 @@
 #include <string>
 
 #include "renderer/base/result.hpp"
+#include "renderer/film/film_image.hpp"
 #include "renderer/session/mailbox.hpp"
 
 namespace limn::vk { class Device; }
@@ -14,9 +15,11 @@ struct SessionConfig {
   std::string technique;               ///< empty: the first of the registry
   std::vector<std::pair<std::string, double>> parameters;
   uint32_t seed = 0;
+  uint32_t firstSample = 0;            ///< index of the first sample taken of a pixel: a part of a render split by samples
+  uint32_t sampleCount = 0;            ///< samples of every pixel at which it is converged; 0: the technique's own end
   double quantumSeconds = 0.015;       ///< device time between two looks at the mailbox
   double frameSeconds = 0.1;           ///< at rest, the time between two published frames at first; grows as it converges
-  uint64_t memoryBudget = 0;           ///< [byte] on the device; 0: no limit of ours
+  double firstFrameSeconds = 0.05;     ///< after an edit, the time in which the first coarse frame should be gathered
 };
 
 /// The progressive loop over one scene: drain mailbox, restart plan, one quantum of work, publish if due.
@@ -31,15 +34,17 @@ class Session {
   /// Device errors end the session: Error code "device-lost" or "device".
   Result<bool> step();
 
-  /// Runs whole passes, without publishing, until `steps` passes have been made since the restart. For `limn render` and tests.
+  /// Applies what waits in the mailbox, then runs whole passes until `steps` have been made since the restart or the picture
+  /// has converged. Publishes nothing. For `limn render` and tests.
   Result<void> runSteps(uint32_t steps);
   /// Render thread: steps until the mailbox is closed, sleeping when idle.
   Result<void> run();
 
-  const Status& status() const;
-  uint64_t filmHash();                 ///< of mean, second moment and count of every pixel
-  /// The film with its named layers (film/exr_writer.hpp writes it).
-  Result<struct FilmImage> readFilm();
+  /// As of the last pass or publication, with the error estimated anew.
+  Result<Status> status();
+  Result<uint64_t> filmHash();         ///< of means, second moments and counts of every pixel
+  /// The film with its named layers (film/exr.hpp writes it).
+  Result<FilmImage> readFilm();
   /// The picture as it would be published now.
   Result<std::shared_ptr<const Frame>> resolveFrame();
   const Scene& scene() const;

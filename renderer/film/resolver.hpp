@@ -1,0 +1,25 @@
+#pragma once
+#include <vector>
+
+#include "renderer/film/film.hpp"
+#include "renderer/gpu/pass.hpp"
+#include "renderer/scene/edit.hpp"
+#include "shaders/shared/film_shared.h"
+
+namespace limn {
+
+/// Film to display values: exposure, tone map, sRGB; pixels without samples are filled from the coarse grid. Render thread.
+class Resolver {
+ public:
+  static Result<Resolver> create(vk::Device& device, const Film& film);
+  /// RGBA8, sRGB-encoded, row 0 on top. `stride` is the grid on which every pixel has a sample [pixel]; 0: no filling.
+  /// `view` is one of shared::kView... . Waits for the device.
+  Result<std::vector<uint8_t>> resolve(vk::Device& device, const Film& film, const ResolveSettings& settings, uint32_t stride,
+                                       uint32_t view = shared::kViewBeauty);
+
+ private:
+  gpu::Pass m_pass;
+  vk::Buffer m_output;
+};
+
+}  // namespace limn

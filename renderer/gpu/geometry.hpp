@@ -1,0 +1,33 @@
+#pragma once
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "renderer/gpu/packing.hpp"
+#include "renderer/scene/scene.hpp"
+
+namespace limn::gpu {
+
+/// One primitive of one node, flattened into render space: world space less `renderOrigin`, single precision.
+struct GeometryBlock {
+  uint32_t node = 0, mesh = 0, primitive = 0;
+  uint32_t material = 0;                     ///< index into the device's material table (0 is the default material)
+  uint32_t firstTriangle = 0, firstVertex = 0;  ///< in the scene-wide arrays
+  std::vector<glm::vec3> corners;            ///< 3 a triangle
+  std::vector<glm::vec3> positions;          ///< one a vertex
+  std::vector<PackedVertex> vertices;
+  std::vector<glm::uvec3> triangles;         ///< scene-wide vertex indices, winding counter-clockwise in front
+  uint32_t triangleCount() const { return uint32_t(triangles.size()); }
+};
+
+/// Lists the blocks of a scene with their places in the scene-wide arrays; empty vectors, filled by placeBlock.
+std::vector<GeometryBlock> listBlocks(const Scene& scene);
+
+/// Writes the vertices of a block as they stand under `worldFromNode`.
+void placeBlock(const Scene& scene, const glm::dmat4& worldFromNode, const glm::dvec3& renderOrigin, GeometryBlock& block);
+
+/// Where render space has its origin: zero, unless the scene is so far out that floats would round its shapes; then a point
+/// near its centre on a coarse grid, so that moving an object seldom moves it. A function of the bounds alone.
+glm::dvec3 renderOriginOf(const Bounds& bounds);
+
+}  // namespace limn::gpu

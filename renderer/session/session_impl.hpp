@@ -1,0 +1,113 @@
+#pragma once
+#include <map>
+#include <optional>
+
+#include "renderer/film/film_statistics.hpp"
+#include "renderer/film/resolver.hpp"
+#include "renderer/gpu/device_scene.hpp"
+#include "renderer/gpu/pass.hpp"
+#include "renderer/session/restart_plan.hpp"
+#include "renderer/session/session.hpp"
+#include "renderer/techniques/technique.hpp"
+#include "renderer/visibility/bvh.hpp"
+
+namespace limn {
+
+/// Parameter values by announced name, complete for the present technique.
+using ParameterValues = std::map<std::string, double>;
+
+/// Edits that were applied to the scene and whose derived data are not redone yet.
+struct PendingChanges {
+  ChangeSet changes;
+  CostClass parameterCost = CostClass::none;
+  bool sizeChanged = false;
+};
+
+/// What Session is made of. One file a concern: session.cpp the loop, session_edits.cpp what an edit does, session_state.cpp the
+/// derived data, session_publish.cpp pictures and status, session_queries.cpp answers.
+struct Session::Impl {
+  Impl(vk::Device& d, Mailbox& in, FrameSlot& slot, StatusQueue& out) : device(d), mailbox(in), frames(slot), replies(out), mirror(d) {}
+
+  // session_state.cpp
+  Result<void> init(Scene newScene, LoadReport newReport, const SessionConfig& newConfig);
+  Result<void> chooseTechnique(const std::string& name);
+  Result<void> resize(uint32_t width, uint32_t height);
+  Result<void> syncScene(const ChangeSet& changes);
+  Result<void> updateBvh(const gpu::SyncReport& report);
+  Result<void> writeCamera();
+  Result<void> restartFilm(CostClass cost);
+  TechniqueContext context() const;
+
+  // session_edits.cpp
+  Result<void> drainMailbox();
+  Result<void> handle(EditRequest& request);
+  Result<void> handle(LoadRequest& request);
+  Result<void> checkEdit(const Edit& edit) const;
+  Result<CostClass> applyTechnique(const SetTechnique& edit);
+  Result<void> redoPending();
+
+  // session_publish.cpp
+  Result<void> publishIfDue();
+  bool frameIsDue(double now) const;
+  bool gridComplete() const;
+  Result<void> publish();
+  Result<std::shared_ptr<const Frame>> makeFrame();
+  Result<void> estimateError();
+  void refreshStatus();
+  Phase phase() const;
+
+  // session_queries.cpp
+  Result<void> handle(const PickRequest& request);
+  Result<void> handle(const SaveRequest& request);
+  Result<void> handle(const DescribeRequest& request);
+  Result<void> handle(const WaitRequest& request);
+  Result<void> handle(const WatchRequest& request);
+  Result<void> answerWaits();
+  Result<FilmImage> readFilm();
+  std::shared_ptr<const SceneSummary> summary() const;
+
+  // session.cpp
+  bool idle() const { return progress.converged || (!watched && waits.empty()); }
+  Result<void> work(double seconds);
+
+  vk::Device& device;
+  Mailbox& mailbox;
+  FrameSlot& frames;
+  StatusQueue& replies;
+  SessionConfig config;
+
+  Scene scene;
+  LoadReport report;
+  ResolveSettings resolve;
+  SceneNeeds needs;
+  uint32_t sceneRevision = 0, viewRevision = 0;
+
+  gpu::DeviceScene mirror;
+  SceneBvh bvh;
+  vk::Buffer camera, pickResult;
+  gpu::Pass pickPass;
+  std::optional<Film> film;
+  std::optional<Resolver> resolver;
+  std::optional<FilmStatistics> statistics;
+  std::unique_ptr<Technique> technique;
+  ParameterValues parameters;
+
+  PendingChanges pending;
+  Progress progress;
+  FilmError error;
+  double restartedAt = 0.0, editReceivedAt = 0.0, publishedAt = 0.0;
+  uint64_t raysAtRestart = 0;
+  double sampledSeconds = 0.0;          ///< device time since the restart
+  bool frameOfState = false;            ///< a picture of the present state was published
+  bool showAgain = false;               ///< the display settings changed
+  bool newSamples = false;              ///< since the last publication
+  uint32_t firstStride = 8;             ///< grid at which the first picture after a restart is shown
+  bool watched = true;
+  uint64_t frameId = 0;
+  std::map<uint64_t, uint32_t> appliedSeq;  ///< newest applied seq of every client
+  std::vector<WaitRequest> waits;
+  Status status;
+  std::vector<StageTime> stages;
+};
+
+}  // namespace limn

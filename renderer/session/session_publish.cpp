@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/base/clock.hpp"
+#include "renderer/session/session_impl.hpp"
+
+namespace limn {
+
+Phase Session::Impl::phase() const {
+  if (progress.converged) return Phase::converged;
+  return progress.passes == 0 ? Phase::coarse : Phase::converging;
+}
+
+// The first picture waits for its grid; the next for a whole level or pass; later ones come ever more slowly, for noise falls
+// with the root of time.
+bool Session::Impl::frameIsDue(double now) const {
+  if (!watched) return false;
+  if (!frameOfState) return progress.converged || progress.passes > 0 || (progress.gatheredShare > 0.0 && progress.fillStride <= firstStride &&
+                                                                          gridComplete());
+  if (showAgain || progress.converged) return newSamples || showAgain;
+  if (!newSamples) return false;
+  const double wait = std::clamp(0.25 * (now - restartedAt), config.frameSeconds, 10.0 * config.frameSeconds);
+  return now - publishedAt >= wait;
+}
+
+// Whether the grid of fillStride is whole, not merely the coarsest that there is.
+bool Session::Impl::gridComplete() const {
+  const double share = 1.0 / (double(progress.fillStride) * progress.fillStride);
+  return progress.gatheredShare >= share * 0.999;
+}
+
+Result<void> Session::Impl::publishIfDue() {
+  if (!frameIsDue(nowSeconds())) return {};
+  return publish();
+}
+
+Result<void> Session::Impl::publish() {
+  // The estimate needs pairs of samples; during the first passes there are none, and the coarse frame is not kept waiting.
+  if (progress.passes > 1)
+    if (auto done = estimateError(); !done) return done;
+  auto frame = makeFrame();
+  if (!frame) return frame.error();
+  publishedAt = nowSeconds();
+  frameOfState = true;
+  showAgain = newSamples = false;
+  ++status.framesPublished;
+  frames.publish(frame.take());
+  refreshStatus();
+  return {};
+}
+
+Result<void> Session::Impl::estimateError() {
+  auto estimate = statistics->estimate(device, *film);
+  if (!estimate) return estimate.error();
+  error = *estimate;
+  return {};
+}
+
+Result<std::shared_ptr<const Frame>> Session::Impl::makeFrame() {
+  const double begin = nowSeconds();
+  auto rgba = resolver->resolve(device, *film, resolve, progress.passes > 0 ? 0 : progress.fillStride);
+  if (!rgba) return rgba.error();
+  const double end = nowSeconds();
+  auto frame = std::make_shared<Frame>();
+  frame->rgba = rgba.take();
+  FrameInfo& info = frame->info;
+  info.frameId = ++frameId;
+  info.sceneRevision = sceneRevision;
+  info.viewRevision = viewRevision;
+  info.width = config.width;
+  info.height = config.height;
+  info.phase = phase();
+  info.steps = progress.passes;
+  info.gatheredShare = float(progress.gatheredShare);
+  info.meanSamples = progress.passes > 1 ? float(error.meanSamples) : float(progress.gatheredShare);
+  info.estimatedError = float(error.relMse);
+  info.errorLow = float(error.low);
+  info.errorHigh = float(error.high);
+  info.msSinceEdit = editReceivedAt > 0.0 ? float((end - editReceivedAt) * 1e3) : 0.0f;
+  info.discardedSamples = technique->discardedSamples();
+  info.stages = {{"sample", float(sampledSeconds * 1e3)}, {"resolve", float((end - begin) * 1e3)}};
+  for (const auto& [client, seq] : appliedSeq) info.applied.push_back({client, seq});
+  return std::shared_ptr<const Frame>(std::move(frame));
+}
+
+void Session::Impl::refreshStatus() {
+  status.phase = phase();
+  status.idle = idle();
+  status.steps = progress.passes;
+  status.meanSamples = float(error.meanSamples);
+  status.estimatedError = float(error.relMse);
+  status.secondsSinceRestart = nowSeconds() - restartedAt;
+  status.raysPerSecond = sampledSeconds > 0.0 ? double(technique->raysTraced() - raysAtRestart) / sampledSeconds : 0.0;
+  status.discardedSamples = technique->discardedSamples();
+  status.pipelinesCreated = device.pipelineStats().created;
+  status.technique = technique->info().name;
+  status.device = device.info().name;
+  status.ran = technique->ran();
+  status.leftOut = technique->leftOut();
+  for (const std::string& need : describe(needs)) status.ran.push_back("scene: " + need);
+  status.memory.assign(device.memory().byOwner().begin(), device.memory().byOwner().end());
+  status.stages = stages;
+  status.stages.push_back({"sample", float(sampledSeconds * 1e3)});
+  replies.setStatus(status);
+}
+
+}  // namespace limn

@@ -1,0 +1,164 @@
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/base/clock.hpp"
+#include "renderer/base/log.hpp"
+#include "renderer/session/session_impl.hpp"
+#include "renderer/vk/transfer.hpp"
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/g_buffer_shared.h"
+
+namespace limn {
+namespace {
+
+ChangeSet wholeScene() {
+  ChangeSet all;
+  all.everything = true;
+  return all;
+}
+
+Result<vk::Buffer> smallBuffer(vk::Device& device, size_t bytes, vk::MemoryKind memory, const char* name) {
+  vk::BufferDesc desc;
+  desc.size = bytes;
+  desc.memory = memory;
+  desc.name = name;
+  desc.owner = "session";
+  return vk::Buffer::create(device, desc);
+}
+
+}  // namespace
+
+Result<void> Session::Impl::init(Scene newScene, LoadReport newReport, const SessionConfig& newConfig) {
+  config = newConfig;
+  scene = std::move(newScene);
+  report = std::move(newReport);
+  auto cameraBuffer = smallBuffer(device, sizeof(shared::CameraData), vk::MemoryKind::deviceLocal, "session.camera");
+  if (!cameraBuffer) return cameraBuffer.error();
+  camera = cameraBuffer.take();
+  auto pickBuffer = smallBuffer(device, sizeof(shared::GBufferTexel), vk::MemoryKind::readback, "session.pick");
+  if (!pickBuffer) return pickBuffer.error();
+  pickResult = pickBuffer.take();
+
+  const auto& first = techniqueInfos().front().name;
+  if (auto done = chooseTechnique(config.technique.empty() ? first : config.technique); !done) return done;
+  SetTechnique given;
+  given.parameters = config.parameters;
+  if (auto checked = checkEdit(Edit(given)); !checked) return checked;
+  if (auto applied = applyTechnique(given); !applied) return applied.error();
+  if (auto done = resize(config.width, config.height); !done) return done;
+  const double begin = nowSeconds();
+  if (auto done = syncScene(wholeScene()); !done) return done;
+  const double built = nowSeconds();
+  if (auto done = writeCamera(); !done) return done;
+  if (auto done = restartFilm(CostClass::reload); !done) return done;
+  const double ready = nowSeconds();
+  stages = {{"build", float((built - begin) * 1e3)}, {"warmUp", float((ready - built) * 1e3)}};
+  logInfo("scene built in " + std::to_string(int((built - begin) * 1e3)) + " ms, pipelines warm after " +
+          std::to_string(int((ready - built) * 1e3)) + " ms (" + (device.pipelineCacheLoaded() ? "from the cache" : "cold") + "), " +
+          std::to_string(device.pipelineStats().created) + " pipelines");
+  sceneRevision = viewRevision = 1;
+  return {};
+}
+
+Result<void> Session::Impl::chooseTechnique(const std::string& name) {
+  auto made = makeTechnique(name);
+  if (!made) return Error{"unknown-technique", "no technique is named \"" + name + "\"", "technique"};
+  technique = std::move(made);
+  parameters.clear();
+  for (const ParameterInfo& p : technique->info().parameters) {
+    parameters[p.name] = p.defaultValue;
+    technique->setParameter(p.name, p.defaultValue);
+  }
+  return {};
+}
+
+Result<void> Session::Impl::resize(uint32_t width, uint32_t height) {
+  auto newFilm = Film::create(device, width, height);
+  if (!newFilm) return newFilm.error();
+  auto newResolver = Resolver::create(device, *newFilm);
+  if (!newResolver) return newResolver.error();
+  auto newStatistics = FilmStatistics::create(device, *newFilm);
+  if (!newStatistics) return newStatistics.error();
+  film = newFilm.take();
+  resolver = newResolver.take();
+  statistics = newStatistics.take();
+  config.width = width;
+  config.height = height;
+  return {};
+}
+
+Result<void> Session::Impl::syncScene(const ChangeSet& changes) {
+  auto synced = mirror.sync(scene, changes);
+  if (!synced) return synced.error();
+  if (auto done = updateBvh(*synced); !done) return done;
+  needs = sceneNeeds(scene);
+  return {};
+}
+
+Result<void> Session::Impl::updateBvh(const gpu::SyncReport& synced) {
+  std::vector<uint32_t> changed = synced.movedBlocks;
+  changed.insert(changed.end(), synced.alphaBlocks.begin(), synced.alphaBlocks.end());
+  std::vector<TriangleBlock> blocks;
+  for (size_t i = 0; i < mirror.blocks().size(); ++i) {
+    blocks.push_back({mirror.blocks()[i].corners, mirror.blocks()[i].firstTriangle, mirror.blockNeedsAlpha(i)});
+    if (synced.reloaded) changed.push_back(uint32_t(i));
+  }
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  if (changed.empty() && !synced.reloaded) return {};
+  return bvh.update(device, blocks, changed);
+}
+
+Result<void> Session::Impl::writeCamera() {
+  const View& view = scene.view;
+  const glm::dvec3 forward = glm::normalize(view.target - view.eye);
+  glm::dvec3 right = glm::cross(forward, view.up);
+  if (!(glm::length(right) > 1e-9)) right = glm::cross(forward, std::abs(forward.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0));
+  right = glm::normalize(right);
+  const glm::dvec3 up = glm::cross(right, forward);
+  const double halfHeight = view.lens.perspective ? std::tan(view.lens.yfov * 0.5) : double(view.lens.ymag);
+  const double halfWidth = halfHeight * config.width / config.height;
+  shared::CameraData data{};
+  data.eyeR = glm::vec3(view.eye - mirror.renderOrigin());
+  data.clipNear = view.lens.znear;
+  data.right = glm::vec3(right * halfWidth);
+  data.perspective = view.lens.perspective ? 1 : 0;
+  data.up = glm::vec3(up * halfHeight);
+  data.width = config.width;
+  data.forward = glm::vec3(forward);
+  data.height = config.height;
+  return vk::uploadArray(device, camera, std::span<const shared::CameraData>(&data, 1));
+}
+
+TechniqueContext Session::Impl::context() const {
+  return {device, mirror, bvh, camera, *film, config.seed, config.firstSample, config.sampleCount};
+}
+
+Result<void> Session::Impl::restartFilm(CostClass cost) {
+  if (auto done = technique->prepare(context(), needs); !done) return done;
+  if (auto done = technique->restart(context(), cost); !done) return done;
+  if (!pickPass) {
+    auto all = gpu::joined(mirror.bindings(), {vk::texel(BINDING_BVH_NODES, bvh.nodes()), vk::texel(BINDING_BVH_TRIANGLES, bvh.triangles()),
+                                               vk::storage(BINDING_CAMERA, camera), vk::storage(BINDING_OUTPUT, pickResult)});
+    auto pass = gpu::Pass::create(device, "g_buffer", all, sizeof(shared::GBufferPush));
+    if (!pass) return pass.error();
+    pickPass = pass.take();
+    if (auto warm = gpu::runNow(device, [&](vk::CommandRecorder& r) { pickPass.warmUp(r, all); }); !warm) return warm;
+  }
+  // The finest grid that the first picture can wait for; one step of hysteresis keeps it from flickering between two.
+  const auto fits = [&](uint32_t stride, double share) { return technique->secondsToGrid(stride) <= config.firstFrameSeconds * share; };
+  if (firstStride < 8 && !fits(firstStride, 1.3)) firstStride *= 2;
+  else if (firstStride > 1 && fits(firstStride / 2, 0.8)) firstStride /= 2;
+  progress = {};
+  progress.fillStride = 8;
+  error = {};
+  error.relMse = error.high = std::numeric_limits<double>::infinity();
+  restartedAt = nowSeconds();
+  raysAtRestart = technique->raysTraced();
+  sampledSeconds = 0.0;
+  frameOfState = newSamples = false;
+  ++status.restarts;
+  return {};
+}
+
+}  // namespace limn

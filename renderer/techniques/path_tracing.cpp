@@ -1,0 +1,243 @@
+#include "renderer/techniques/path_tracing.hpp"
+
+#include <cmath>
+
+#include "renderer/base/clock.hpp"
+#include "renderer/film/film_statistics.hpp"
+#include "renderer/gpu/pass.hpp"
+#include "renderer/techniques/pixel_order.hpp"
+#include "renderer/techniques/work_rate.hpp"
+#include "renderer/vk/transfer.hpp"
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/film_shared.h"
+
+namespace limn {
+namespace {
+
+constexpr uint32_t kWorkgroup = 64;
+constexpr double kInitialPathsPerSecond = 2e5;  // of a slow two-core machine; the first quanta correct it
+
+/// Samples a pixel takes in a pass: one while a first picture is wanted, then enough to keep vectors busy across path ends.
+uint32_t samplesOfPass(uint32_t pass) { return pass < 2 ? 1 : pass < 3 ? 2 : 4; }
+
+class PathTracing final : public Technique {
+ public:
+  const TechniqueInfo& info() const override { return pathTracingInfo(); }
+  Result<void> prepare(const TechniqueContext& context, const SceneNeeds& needs) override;
+  void setParameter(const std::string& name, double value) override;
+  Result<void> restart(const TechniqueContext& context, CostClass changed) override;
+  Result<Progress> advance(const TechniqueContext& context, double seconds) override;
+  double secondsToGrid(uint32_t stride) const override;
+  std::vector<std::string> ran() const override { return m_ran; }
+  std::vector<std::string> leftOut() const override { return m_leftOut; }
+  uint64_t raysTraced() const override { return m_raysTraced; }
+  uint64_t discardedSamples() const override { return m_discarded; }
+
+ private:
+  std::vector<vk::Binding> bindings(const TechniqueContext& context, const vk::Buffer& list) const;
+  Result<void> makeLists(const TechniqueContext& context);
+  Result<void> beginPass(const TechniqueContext& context);
+  Result<void> dispatch(const TechniqueContext& context, uint32_t count);
+  void readCounters();
+  void describeNeeds(const SceneNeeds& needs);
+  uint32_t sampleLimit(const TechniqueContext& context) const { return context.sampleLimit ? context.sampleLimit : m_maxSamples; }
+  Progress progress() const;
+
+  uint32_t m_maxBounces = 32, m_rouletteStart = 3, m_minSamples = 16, m_maxSamples = 4096;
+  bool m_adaptive = true;
+  float m_noiseThreshold = 0.01f;
+
+  gpu::Pass m_opaque, m_alpha;   ///< without and with alpha tests
+  bool m_needsAlpha = false;
+  vk::Buffer m_order, m_active, m_counters;
+  PixelOrder m_pixelOrder;
+  std::optional<FilmStatistics> m_statistics;
+  const Film* m_film = nullptr;  ///< the lists were made for it
+  std::vector<std::string> m_ran, m_leftOut;
+  WorkRate m_rate{kInitialPathsPerSecond};
+
+  uint32_t m_pass = 0, m_cursor = 0, m_passPixels = 0, m_passSamples = 0, m_samplesDone = 0;
+  bool m_passOpen = false, m_converged = false;
+  uint64_t m_raysTraced = 0, m_discarded = 0;
+};
+
+Result<void> PathTracing::prepare(const TechniqueContext& context, const SceneNeeds& needs) {
+  describeNeeds(needs);
+  m_needsAlpha = needs.alpha;
+  if (m_film != &context.film)
+    if (auto made = makeLists(context); !made) return made;
+  if (m_opaque) return {};
+  const auto like = bindings(context, m_order);
+  auto opaque = gpu::Pass::create(context.device, "path_tracing", like, sizeof(shared::PathTracingPush));
+  if (!opaque) return opaque.error();
+  m_opaque = opaque.take();
+  auto alpha = gpu::Pass::create(context.device, "path_tracing_alpha", like, sizeof(shared::PathTracingPush));
+  if (!alpha) return alpha.error();
+  m_alpha = alpha.take();
+  // Both variants, so that the first transparent material of an edit compiles nothing.
+  return gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
+    m_opaque.warmUp(r, like);
+    m_alpha.warmUp(r, like);
+  });
+}
+
+void PathTracing::describeNeeds(const SceneNeeds& needs) {
+  m_ran = {"path tracing"};
+  m_leftOut.clear();
+  (needs.alpha ? m_ran : m_leftOut).push_back("alpha tests");
+  (needs.punctualLights || needs.emissiveTriangles || needs.environment ? m_ran : m_leftOut).push_back("next-event estimation");
+  (needs.environmentImage ? m_ran : m_leftOut).push_back("environment importance table");
+  (needs.textures ? m_ran : m_leftOut).push_back("textures");
+}
+
+void PathTracing::setParameter(const std::string& name, double value) {
+  if (name == "maxBounces") m_maxBounces = uint32_t(value);
+  else if (name == "rouletteStart") m_rouletteStart = uint32_t(value);
+  else if (name == "adaptive") m_adaptive = value != 0.0;
+  else if (name == "noiseThreshold") m_noiseThreshold = float(value);
+  else if (name == "minSamples") m_minSamples = uint32_t(value);
+  else if (name == "maxSamples") m_maxSamples = uint32_t(value);
+  m_converged = false;
+}
+
+Result<void> PathTracing::makeLists(const TechniqueContext& context) {
+  m_pixelOrder = makePixelOrder(context.film.width(), context.film.height());
+  vk::BufferDesc desc;
+  desc.owner = "path-tracing";
+  desc.name = "pathTracing.order";
+  auto order = vk::createBufferWith(context.device, desc, std::span<const uint32_t>(m_pixelOrder.pixels));
+  if (!order) return order.error();
+  m_order = order.take();
+  desc.name = "pathTracing.active";
+  desc.size = m_pixelOrder.pixels.size() * sizeof(uint32_t);
+  auto active = vk::Buffer::create(context.device, desc);
+  if (!active) return active.error();
+  m_active = active.take();
+  desc.name = "pathTracing.counters";
+  desc.size = shared::kCounterWords * sizeof(uint32_t);
+  desc.memory = vk::MemoryKind::readback;
+  auto counters = vk::Buffer::create(context.device, desc);
+  if (!counters) return counters.error();
+  m_counters = counters.take();
+  if (auto cleared = vk::fill(context.device, m_counters, 0, desc.size, 0); !cleared) return cleared;
+  auto statistics = FilmStatistics::create(context.device, context.film);
+  if (!statistics) return statistics.error();
+  m_statistics = statistics.take();
+  m_film = &context.film;
+  return {};
+}
+
+std::vector<vk::Binding> PathTracing::bindings(const TechniqueContext& context, const vk::Buffer& list) const {
+  auto all = gpu::joined(context.scene.bindings(), context.film.bindings());
+  return gpu::joined(std::move(all), {vk::texel(BINDING_BVH_NODES, context.bvh.nodes()),
+                                      vk::texel(BINDING_BVH_TRIANGLES, context.bvh.triangles()),
+                                      vk::storage(BINDING_CAMERA, context.camera), vk::storage(BINDING_PIXEL_LIST, list),
+                                      vk::storage(BINDING_COUNTERS, m_counters)});
+}
+
+Result<void> PathTracing::restart(const TechniqueContext& context, CostClass) {
+  m_pass = m_cursor = m_samplesDone = 0;
+  m_passOpen = m_converged = false;
+  return gpu::runNow(context.device, [&](vk::CommandRecorder& r) { context.film.recordClear(r); });
+}
+
+Result<void> PathTracing::beginPass(const TechniqueContext& context) {
+  m_cursor = 0;
+  m_passOpen = true;
+  m_passPixels = context.film.pixelCount();
+  m_passSamples = std::min(samplesOfPass(m_pass), sampleLimit(context) - m_samplesDone);
+  if (!m_adaptive || m_samplesDone < m_minSamples) return {};
+  auto error = m_statistics->estimate(context.device, context.film);
+  if (!error) return error.error();
+  auto active = m_statistics->selectPixels(context.device, context.film, m_active, m_minSamples, m_noiseThreshold, error->meanValue);
+  if (!active) return active.error();
+  m_passPixels = *active;
+  return {};
+}
+
+Result<void> PathTracing::dispatch(const TechniqueContext& context, uint32_t count) {
+  const bool adaptive = m_adaptive && m_samplesDone >= m_minSamples;
+  const shared::PathTracingPush push{m_cursor,     count,        context.firstSample + m_samplesDone, m_passSamples,
+                                     context.seed, m_maxBounces, m_rouletteStart};
+  const auto all = bindings(context, adaptive ? m_active : m_order);
+  const double begin = nowSeconds();
+  auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
+    (m_needsAlpha ? m_alpha : m_opaque).record(r, all, push, (count + kWorkgroup - 1) / kWorkgroup);
+  });
+  if (!done) return done;
+  m_rate.measured(uint64_t(count) * m_passSamples, nowSeconds() - begin);
+  readCounters();
+  return {};
+}
+
+void PathTracing::readCounters() {
+  const auto words = m_counters.as<uint32_t>();
+  m_raysTraced = uint64_t(words[shared::kCounterRays]) | uint64_t(words[shared::kCounterRays + 1]) << 32;
+  m_discarded = words[shared::kCounterDiscarded];
+}
+
+Result<Progress> PathTracing::advance(const TechniqueContext& context, double seconds) {
+  if (m_samplesDone >= sampleLimit(context)) m_converged = true;
+  if (m_converged) return progress();
+  if (!m_passOpen) {
+    if (auto begun = beginPass(context); !begun) return begun.error();
+    if (m_passPixels == 0) {
+      m_converged = true;
+      m_passOpen = false;
+      return progress();
+    }
+  }
+  uint64_t count = std::min<uint64_t>(m_rate.itemsIn(seconds) / m_passSamples + kWorkgroup, m_passPixels - m_cursor);
+  if (m_pass == 0)  // never across a level: a coarse picture is shown as soon as it is whole
+    for (const uint32_t end : m_pixelOrder.levelEnd)
+      if (m_cursor < end) {
+        count = std::min<uint64_t>(count, end - m_cursor);
+        break;
+      }
+  if (auto done = dispatch(context, uint32_t(count)); !done) return done.error();
+  m_cursor += uint32_t(count);
+  if (m_cursor < m_passPixels) return progress();
+  m_samplesDone += m_passSamples;
+  ++m_pass;
+  m_passOpen = false;
+  Progress p = progress();
+  p.passFinished = true;
+  return p;
+}
+
+Progress PathTracing::progress() const {
+  Progress p;
+  p.passes = m_pass;
+  p.samplesPerPixel = m_samplesDone;
+  p.converged = m_converged;
+  p.gatheredShare = m_pass > 0 ? 1.0 : m_passPixels ? double(m_cursor) / m_passPixels : 0.0;
+  if (m_pass > 0) return p;
+  p.fillStride = PixelOrder::kStrides[0];
+  for (size_t i = 0; i < PixelOrder::kStrides.size(); ++i)
+    if (m_cursor >= m_pixelOrder.levelEnd[i]) p.fillStride = PixelOrder::kStrides[i];
+  return p;
+}
+
+double PathTracing::secondsToGrid(uint32_t stride) const {
+  for (size_t i = 0; i < PixelOrder::kStrides.size(); ++i)
+    if (PixelOrder::kStrides[i] == stride) return m_rate.secondsFor(m_pixelOrder.levelEnd[i]);
+  return 0.0;
+}
+
+}  // namespace
+
+const TechniqueInfo& pathTracingInfo() {
+  static const TechniqueInfo kInfo{
+      "path-tracing", "Path tracing", "Unbiased; converges to the truth, slowly where light arrives by rare paths.", false,
+      {{"maxBounces", "Indirect bounces; 0 is direct light only", "bounces", ParameterType::integer, 0, 1024, 32, CostClass::regather},
+       {"rouletteStart", "Bounces before Russian roulette may end a path", "bounces", ParameterType::integer, 1, 1024, 3, CostClass::regather},
+       {"adaptive", "Stop pixels that are done", "", ParameterType::boolean, 0, 1, 1, CostClass::regather},
+       {"noiseThreshold", "Relative standard error at which a pixel is done", "1", ParameterType::real, 0.0005, 1, 0.01, CostClass::regather},
+       {"minSamples", "Samples before a pixel may stop", "samples", ParameterType::integer, 4, 4096, 16, CostClass::regather},
+       {"maxSamples", "Samples at which every pixel stops", "samples", ParameterType::integer, 1, 1048576, 4096, CostClass::regather}}};
+  return kInfo;
+}
+
+std::unique_ptr<Technique> makePathTracing() { return std::make_unique<PathTracing>(); }
+
+}  // namespace limn

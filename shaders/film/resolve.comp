@@ -1,0 +1,50 @@
+// Film to display: fills pixels that have no sample yet from the coarse grid, exposure, tone map, sRGB.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/lib/film.glsl"
+#include "shaders/lib/tone_map.glsl"
+
+layout(local_size_x = 16, local_size_y = 16) in;
+layout(binding = BINDING_OUTPUT, scalar) writeonly buffer Output { uint outputRgba[]; };
+layout(push_constant, scalar) uniform Push { ResolvePush push; };
+
+vec3 valueOf(uint pixel) {
+  if (push.view == kViewDirect) return filmDirect[pixel].rgb;
+  if (push.view == kViewIndirect) return filmMean[pixel].rgb - filmDirect[pixel].rgb;
+  if (push.view == kViewAlbedo) return filmAlbedo[pixel].rgb;
+  if (push.view == kViewNormal) return filmNormal[pixel].rgb * 0.5 + 0.5;
+  if (push.view == kViewDepth) return vec3(1.0 / (1.0 + filmAlbedo[pixel].w));
+  if (push.view == kViewSamples) return vec3(filmMean[pixel].w / 256.0);
+  return filmMean[pixel].rgb;
+}
+
+uint pixelAt(ivec2 p) { return uint(p.y) * push.width + uint(p.x); }
+
+// Bilinear between the four pixels of the coarse grid around `p` that have samples.
+vec3 fillFromGrid(ivec2 p) {
+  int stride = int(push.stride);
+  ivec2 cell = p / stride;
+  vec2 f = vec2(p - cell * stride) / float(stride);
+  vec3 sum = vec3(0.0);
+  float weights = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    ivec2 corner = ivec2(k & 1, k >> 1);
+    ivec2 q = (cell + corner) * stride;
+    if (q.x >= int(push.width) || q.y >= int(push.height) || filmMean[pixelAt(q)].w <= 0.0) continue;
+    float w = (corner.x == 1 ? f.x : 1.0 - f.x) * (corner.y == 1 ? f.y : 1.0 - f.y) + 1e-6;
+    sum += w * valueOf(pixelAt(q));
+    weights += w;
+  }
+  return weights > 0.0 ? sum / weights : vec3(0.0);
+}
+
+void main() {
+  ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+  if (p.x >= int(push.width) || p.y >= int(push.height)) return;
+  uint pixel = pixelAt(p);
+  vec3 color = filmMean[pixel].w > 0.0 || push.stride == 0u ? valueOf(pixel) : fillFromGrid(p);
+  bool radiance = push.view <= kViewIndirect;
+  color = radiance ? toneMap(max(color, vec3(0.0)) * push.exposure, push.toneMap) : color;
+  outputRgba[pixel] = packUnorm4x8(vec4(linearToSrgb(color), 1.0));
+}

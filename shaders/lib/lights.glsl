@@ -1,0 +1,92 @@
+// Next-event estimation over all lights, one chosen by power.
+#ifndef LIMN_LIGHTS_GLSL
+#define LIMN_LIGHTS_GLSL
+#include "shaders/lib/environment.glsl"
+#include "shaders/lib/surface.glsl"
+
+struct LightSample {
+  vec3 dirW;       // unit, from the surface towards the light
+  float distance;  // [m], kInfinity for directional lights and the environment
+  vec3 radiance;   // arriving radiance / pdf, per unit solid angle (delta lights: intensity over their probability)
+  float pdf;       // per unit solid angle, with the choice of the light; 0 for delta lights
+};
+
+uint chooseLight(float u) {
+  float scaled = u * float(sceneInfo.lightCount);
+  uint i = min(uint(scaled), sceneInfo.lightCount - 1u);
+  return (scaled - float(i)) < lights[i].aliasShare ? i : lights[i].alias;
+}
+
+float spotRamp(LightData light, vec3 dirToLight) {
+  float ramp = clamp(dot(light.dirR, -dirToLight) * light.spotScale + light.spotOffset, 0.0, 1.0);
+  return ramp * ramp;
+}
+
+// glTF's smooth cut at the range. [KHR_lights_punctual]
+float rangeWindow(LightData light, float d) {
+  float x = d * light.invRange, x2 = x * x;
+  return clamp(1.0 - x2 * x2, 0.0, 1.0);
+}
+
+vec3 triangleEmission(uint triangle, vec2 barycentrics) {
+  uvec4 t = texelFetch(triangles, int(triangle));
+  MaterialData m = materials[t.w];
+  if (m.emissiveTexture.image == kNoIndex) return m.emission;
+  Attributes a = interpolate(t.xyz, vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics), true);
+  return m.emission * sampleTexture(m.emissiveTexture, a.uv0, a.uv1).rgb;
+}
+
+// pdf of light sampling for the point of triangle light `light` at distance d, seen under |cos| at the light.
+float triangleLightPdf(LightData light, float d, float cosLight) {
+  return light.probability * d * d / (light.area * max(cosLight, 1e-7));
+}
+
+LightSample sampleTriangleLight(LightData light, vec3 p, vec2 u) {
+  uvec4 t = texelFetch(triangles, int(light.triangle));
+  vec3 p0 = texelFetch(positions, int(t.x)).xyz;
+  vec3 e1 = texelFetch(positions, int(t.y)).xyz - p0, e2 = texelFetch(positions, int(t.z)).xyz - p0;
+  vec2 barycentrics = sampleTriangle(u);
+  vec3 toLight = p0 + e1 * barycentrics.x + e2 * barycentrics.y - p;
+  float d = length(toLight);
+  LightSample s = LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0);
+  if (!(d > 0.0)) return s;
+  s.dirW = toLight / d;
+  s.distance = d * (1.0 - 2e-5);  // the shadow ray stops short of the emitter itself, by more than its hit distance is rounded
+  float scale = max(maxComponent(abs(e1)), maxComponent(abs(e2)));
+  float cosLight = abs(dot(normalize(cross(e1 / scale, e2 / scale)), s.dirW));
+  if (!(cosLight > 1e-7)) return s;
+  s.pdf = triangleLightPdf(light, d, cosLight);
+  s.radiance = triangleEmission(light.triangle, barycentrics) / s.pdf;
+  return s;
+}
+
+LightSample sampleLight(vec3 p, float uLight, vec2 u) {
+  LightSample s = LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0);
+  if (sceneInfo.lightCount == 0u) return s;
+  LightData light = lights[chooseLight(uLight)];
+  if (light.type == kLightTriangle) return sampleTriangleLight(light, p, u);
+  if (light.type == kLightEnvironment) {
+    s.dirW = sampleEnvironment(u, s.pdf);
+    s.pdf *= light.probability;
+    s.distance = kInfinity;
+    s.radiance = s.pdf > 0.0 ? environmentRadiance(s.dirW) / s.pdf : vec3(0.0);
+    return s;
+  }
+  if (light.type == kLightDirectional) {
+    s.dirW = -light.dirR;
+    s.distance = kInfinity;
+    s.radiance = light.color / light.probability;
+    return s;
+  }
+  vec3 toLight = light.posR - p;
+  float d = length(toLight);
+  if (!(d > 0.0)) return s;
+  s.dirW = toLight / d;
+  s.distance = d;
+  float window = rangeWindow(light, d);
+  if (light.type == kLightSpot) window *= spotRamp(light, s.dirW);
+  s.radiance = light.color * (window / light.probability) / d / d;
+  return s;
+}
+
+#endif
