@@ -36,8 +36,8 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
 
   bool parse_error(size_t byte, const std::string&, const nlohmann::detail::exception& e) override {
     const bool range = e.id == 406;  // a number that double cannot hold
-    error = range ? Error{"out-of-range", "a number is too large", "byte " + std::to_string(byte)}
-                  : Error{"bad-message", "malformed JSON", "byte " + std::to_string(byte)};
+    const std::string place = "byte " + std::to_string(byte > 0 ? byte - 1 : 0);  // nlohmann counts bytes read
+    error = range ? Error{"out-of-range", "a number is too large", place} : Error{"bad-message", "malformed JSON", place};
     return false;
   }
 

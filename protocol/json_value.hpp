@@ -27,7 +27,7 @@ struct JsonValue {
   std::string_view kind() const;
 };
 
-/// Reads one JSON text (RFC 8259, UTF-8 without byte order mark). Errors: "bad-message" with place "byte N" for malformed
+/// Reads one JSON text (RFC 8259, UTF-8 without byte order mark). Errors: "bad-message" with place "byte N" (from 0) for malformed
 /// text, invalid UTF-8 and members that appear twice; "out-of-range" for numbers beyond double; "limit" for nesting deeper
 /// than `maxDepth`. Any thread.
 Result<JsonValue> parseJson(std::string_view text, size_t maxDepth);

@@ -62,7 +62,9 @@ def camel_first(name):
 def union_lines(union):
     members = ", ".join(member for _, member in union["members"])
     out = [f"/// {union['doc']} The wire names the alternative in \"{union['tag']}\".", f"using {union['name']} = std::variant<{members}>;",
-           f"std::string_view {union['tag']}Of(const {union['name']}& value);", ""]
+           f"std::string_view {union['tag']}Of(const {union['name']}& value);",
+            f"inline constexpr std::array<std::string_view, {len(union['members'])}> k{union['name']}{pascal(union['tag'])}s{{"
+            + ", ".join(f'"{word}"' for word, _ in union["members"]) + "};", ""]
     return out
 
 

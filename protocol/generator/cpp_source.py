@@ -1,7 +1,7 @@
 """Writes messages.gen.cpp: readers and writers of every struct in terms of protocol/reader.hpp and protocol/json_writer.hpp."""
 
 from .cpp_header import camel_first
-from .schema import INTEGER_RANGE, camel, editable_targets, field_kind, header_layout, number
+from .schema import INTEGER_RANGE, camel, editable_targets, field_kind, header_layout, number, pascal
 
 
 def rules(f):
@@ -49,14 +49,13 @@ def enum_functions(enum):
 
 def union_functions(union):
     tag, name = union["tag"], union["name"]
-    words = ", ".join(f'"{word}"' for word, _ in union["members"])
-    out = [f"static constexpr std::array<std::string_view, {len(union['members'])}> k{name}Tags{{{words}}};",
-           f"std::string_view {tag}Of(const {name}& value) {{ return k{name}Tags[value.index()]; }}",
+    words = f"k{name}{pascal(tag)}s"
+    out = [f"std::string_view {tag}Of(const {name}& value) {{ return {words}[value.index()]; }}",
            f"static void writeFields(JsonWriter& w, const {name}& v) {{",
            f'  w.field("{tag}", {tag}Of(v));',
            "  std::visit([&w](const auto& alternative) { writeFields(w, alternative); }, v);", "}",
            f"static void readFields(ObjectReader& o, {name}& v) {{",
-           f'  switch (o.tag("{tag}", k{name}Tags)) {{']
+           f'  switch (o.tag("{tag}", {words})) {{']
     for i, (_, member) in enumerate(union["members"]):
         out.append(f"    case {i}: return readFields(o, v.emplace<{member}>());")
     return out + ["    default: return;", "  }", "}", ""]

@@ -27,6 +27,11 @@ function isPlain(value: unknown): value is Plain {
   return typeof value === "object" && value !== null && !Array.isArray(value);
 }
 
+/** The table's own entry; never one that every object inherits. */
+function entry<T>(table: { [name: string]: T }, name: unknown): T | undefined {
+  return typeof name === "string" && Object.hasOwn(table, name) ? table[name] : undefined;
+}
+
 function wrong(expected: string, place: string): never {
   throw new ProtocolError("bad-message", `expected ${expected}`, place);
 }
@@ -70,7 +75,7 @@ function readFields(value: Plain, type: string, place: string, strict: boolean, 
   const union = kUnions[type];
   if (union) {
     const word = value[union.tag];
-    const member = typeof word === "string" ? union.members[word] : undefined;
+    const member = entry(union.members, word);
     if (member === undefined) throw new ProtocolError("out-of-range", "no such alternative", `${place}/${union.tag}`);
     left.delete(union.tag);
     out[union.tag] = word;
@@ -96,9 +101,8 @@ function readShaped(value: unknown, field: Field, place: string, strict: boolean
   if (shape === undefined) return readOne(value, base, field, place, strict);
   if (shape === "{}") {
     if (!isPlain(value)) wrong("an object", place);
-    const map: Plain = {};
-    for (const [name, item] of Object.entries(value)) map[name] = readOne(item, base, field, `${place}/${name}`, strict);
-    return map;
+    const read = ([name, item]: [string, unknown]) => [name, readOne(item, base, field, `${place}/${name}`, strict)];
+    return Object.fromEntries(Object.entries(value).map(read));
   }
   if (!Array.isArray(value)) wrong("an array", place);
   const count = match?.[3];
@@ -116,7 +120,7 @@ function readMessage(json: string, ops: { [op: string]: string }, strict: boolea
     throw new ProtocolError("bad-message", "malformed JSON", "");
   }
   if (!isPlain(value)) wrong("an object", "");
-  const type = typeof value.op === "string" ? ops[value.op] : undefined;
+  const type = entry(ops, value.op);
   if (type === undefined) throw new ProtocolError("unknown-op", "no such op", "/op");
   const left = new Set(Object.keys(value));
   left.delete("op");
