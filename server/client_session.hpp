@@ -1,0 +1,79 @@
+#pragma once
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/messages.gen.hpp"
+#include "server/flow_control.hpp"
+#include "server/transport.hpp"
+
+namespace limn::server {
+
+/// A wait for an estimated error; the renderer knows waits for steps only.
+struct ErrorWait {
+  uint32_t seq = 0;
+  float error = 0.0f;          ///< relMSE
+  bool asked = false;          ///< the film's hash was asked for
+};
+
+/// What the daemon knows of one connection. Loop thread.
+class ClientSession {
+ public:
+  static constexpr size_t kMaxQueuedBytes = 16u << 20;  ///< then a reader is too slow; one longer message alone may wait
+  static constexpr uint32_t kMaxUnanswered = 2048;      ///< requests on their way through the renderer
+
+  ClientSession(ConnectionId id, double now) : m_id(id), m_openedAt(now) {}
+
+  ConnectionId id() const { return m_id; }
+  double age(double now) const { return now - m_openedAt; }
+
+  /// Queues a text message. False when the reader is too slow.
+  [[nodiscard]] bool queue(const protocol::ServerMessage& message);
+  /// Queues a file as a binary message.
+  [[nodiscard]] bool queueFile(uint32_t seq, std::shared_ptr<const std::vector<uint8_t>> file);
+  /// The oldest queued message.
+  std::optional<OutgoingMessage> takeQueued();
+  bool hasQueued() const { return !m_queue.empty(); }
+  size_t queuedMessages() const { return m_queue.size(); }
+
+  /// Whether a picture could be sent at once.
+  bool wantsFrame() const { return greeted && watching && !closing && !ready && flow.hasCredit(); }
+  bool isNew(const Frame& frame) const { return frame.info.frameId > newestFrameId; }
+  EncodingKey encodingFor(const Frame& frame) const { return flow.encodingFor(frame.info.phase, takesJpeg, takesPng); }
+  /// Takes a picture that waits to be written; counts those which it replaces.
+  void take(std::shared_ptr<const EncodedFrame> frame);
+  /// The message of the picture that waits.
+  OutgoingMessage takeFrame(double now);
+
+  // State of the conversation; service*.cpp writes it.
+  bool greeted = false;                ///< hello came and was good
+  bool watching = false;               ///< pictures are wanted
+  bool takesJpeg = true, takesPng = true;
+  uint32_t lastSeq = 0, helloSeq = 0;
+  uint32_t unanswered = 0;
+  bool loading = false, saving = false;
+  std::vector<ErrorWait> errorWaits;
+  uint32_t lastEditSeq = 0;            ///< of an edit that changes something, as far as is known
+  uint32_t lastEffectiveSeq = 0;       ///< of an acknowledged edit that did
+  std::vector<std::string> stages;     ///< announced in hello
+  std::optional<protocol::Status> lastStatus;
+  std::optional<CloseCode> closing;    ///< once everything queued is written
+  std::string closeReason;
+
+  FlowControl flow;
+  std::shared_ptr<const EncodedFrame> ready;   ///< encoded, not begun to be written
+  uint64_t newestFrameId = 0;
+  uint64_t framesSent = 0, framesReplaced = 0;
+
+ private:
+  bool push(OutgoingMessage message);
+
+  ConnectionId m_id;
+  double m_openedAt;
+  std::deque<OutgoingMessage> m_queue;
+  size_t m_queuedBytes = 0;
+};
+
+}  // namespace limn::server

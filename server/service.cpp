@@ -1,0 +1,152 @@
+#include "server/service.hpp"
+
+#include "renderer/base/clock.hpp"
+#include "renderer/base/log.hpp"
+#include "server/convert.hpp"
+
+namespace limn::server {
+namespace {
+
+constexpr double kStatusSeconds = 0.25;
+
+}  // namespace
+
+Service::Service(ServiceConfig config, Mailbox& mailbox, FrameSlot& frames, StatusQueue& replies)
+    : m_config(std::move(config)), m_mailbox(mailbox), m_frames(frames), m_replies(replies), m_aloneSince(nowSeconds()) {}
+
+Result<std::unique_ptr<Service>> Service::open(ServiceConfig config, Mailbox& mailbox, FrameSlot& frames, StatusQueue& replies) {
+  std::unique_ptr<Service> service(new Service(std::move(config), mailbox, frames, replies));
+  Result<std::unique_ptr<Transport>> transport = Transport::open(service->m_config.transport, *service);
+  if (!transport) return transport.error();
+  service->m_transport = transport.take();
+  const auto wake = [loop = service->m_transport.get()] { loop->wake(); };
+  service->m_encoder = std::make_unique<EncodeWorker>(wake);
+  service->m_loader = std::make_unique<LoaderWorker>(service->m_config.assetRoot, service->m_config.readScene, mailbox, wake);
+  frames.onPublish(wake);
+  replies.onPush(wake);
+  return service;
+}
+
+Service::~Service() {
+  // The workers wake the transport: they end first.
+  m_encoder.reset();
+  m_loader.reset();
+  m_transport.reset();
+}
+
+void Service::setReady(bool ready) {
+  m_ready = ready;
+  m_transport->wake();
+}
+
+ClientSession* Service::find(ConnectionId id) {
+  const auto found = m_sessions.find(id);
+  return found == m_sessions.end() ? nullptr : &found->second;
+}
+
+void Service::onOpen(ConnectionId id) {
+  m_sessions.try_emplace(id, id, nowSeconds());
+  ++m_counters.sessions;
+}
+
+void Service::onClose(ConnectionId id) {
+  if (const ClientSession* session = find(id)) m_counters.framesReplaced += session->framesReplaced;
+  m_sessions.erase(id);
+  m_editors.erase(id);
+  if (m_sessions.empty()) m_aloneSince = nowSeconds();
+  tellWatched();
+}
+
+std::optional<OutgoingMessage> Service::nextMessage(ConnectionId id) {
+  ClientSession* session = find(id);
+  if (!session) return std::nullopt;
+  if (auto queued = session->takeQueued()) return queued;
+  if (session->closing) {
+    m_transport->close(id, *session->closing, session->closeReason);
+    return std::nullopt;
+  }
+  if (!session->ready) return std::nullopt;
+  OutgoingMessage frame = session->takeFrame(nowSeconds());
+  ++m_counters.framesSent;
+  m_counters.frameBytes += frame.size();
+  return frame;
+}
+
+void Service::onWake() {
+  routeReplies();
+  distributeFrames();
+}
+
+void Service::onTick() {
+  const double now = nowSeconds();
+  for (auto& [id, session] : m_sessions) checkTimers(session, now);
+  if (m_ready && (m_viewDoubtful || !m_editors.empty())) describeForAll();
+  if (now - m_lastStatus >= kStatusSeconds) {
+    m_lastStatus = now;
+    const protocol::Status status = toWire(m_replies.status());
+    for (auto& [id, session] : m_sessions)
+      if (session.greeted) sendStatus(session, status);
+  }
+  distributeFrames();
+  const bool leave = m_config.idleExitSeconds > 0.0 && m_sessions.empty() && now - m_aloneSince > m_config.idleExitSeconds;
+  if (leave && !m_transport->draining()) {
+    logInfo("nobody came for a while: the daemon ends");
+    m_transport->drain();
+  }
+}
+
+void Service::onDrain() {
+  for (auto& [id, session] : m_sessions) closeSession(session, CloseCode::goingAway, "the daemon stops");
+}
+
+void Service::checkTimers(ClientSession& session, double now) {
+  if (session.closing) return;
+  if (!session.greeted && session.age(now) > m_config.helloSeconds) {
+    ++m_counters.helloTimeouts;
+    closeSession(session, CloseCode::policy, "no hello came");
+  } else if (session.flow.oldestAge(now) > m_config.ackSeconds) {
+    ++m_counters.ackTimeouts;
+    closeSession(session, CloseCode::policy, "acknowledgements are missing");
+  }
+}
+
+void Service::send(ClientSession& session, const protocol::ServerMessage& message) {
+  if (session.closing) return;
+  if (!session.queue(message)) return dropSlowReader(session);
+  m_transport->wantWrite(session.id());
+}
+
+void Service::sendError(ClientSession& session, uint32_t seq, const Error& error) {
+  ++m_counters.errors;
+  protocol::ErrorMessage message;
+  if (seq != 0) message.seq = seq;
+  message.code = error.code;
+  message.message = error.message;
+  if (!error.place.empty()) message.place = error.place;
+  send(session, message);
+}
+
+void Service::closeSession(ClientSession& session, CloseCode code, const std::string& reason) {
+  if (session.closing) return;
+  if (session.greeted) send(session, protocol::ServerBye{reason});
+  session.closing = code;
+  session.closeReason = reason;
+  session.ready = nullptr;
+  m_transport->wantWrite(session.id());
+}
+
+void Service::dropSlowReader(ClientSession& session) {
+  ++m_counters.slowReaders;
+  session.closing = CloseCode::policy;
+  m_transport->kill(session.id());
+}
+
+void Service::tellWatched() {
+  bool watched = false;
+  for (const auto& [id, session] : m_sessions) watched |= session.greeted && session.watching && !session.closing;
+  if (watched == m_watched) return;
+  m_watched = watched;
+  m_mailbox.push(WatchRequest{watched});
+}
+
+}  // namespace limn::server

@@ -1,0 +1,123 @@
+#pragma once
+#include <atomic>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "renderer/session/mailbox.hpp"
+#include "renderer/techniques/technique_info.hpp"
+#include "server/client_session.hpp"
+#include "server/encode_worker.hpp"
+#include "server/loader_worker.hpp"
+#include "server/site.hpp"
+#include "server/transport.hpp"
+
+namespace limn::server {
+
+struct ServiceConfig {
+  TransportConfig transport;
+  std::string serverName = "limnd";
+  std::vector<TechniqueInfo> techniques;
+  std::vector<std::string> layers;         ///< that save takes
+  uint32_t maxImageSide = 4096;            ///< [pixel]
+  std::filesystem::path assetRoot;
+  SceneReader readScene;
+  std::span<const SiteFile> site;
+  double helloSeconds = 5.0;               ///< from the handshake to the client's hello
+  double ackSeconds = 10.0;                ///< without an acknowledgement while frames are in flight
+  double idleExitSeconds = 0.0;            ///< without a client, then drain; 0: never
+};
+
+/// What is counted for /metrics and tests. Loop thread.
+struct ServiceCounters {
+  uint64_t sessions = 0, framesSent = 0, framesReplaced = 0, framesEncoded = 0, frameBytes = 0;
+  uint64_t edits = 0, requests = 0, errors = 0, loads = 0, acknowledgements = 0, helloTimeouts = 0, ackTimeouts = 0,
+           slowReaders = 0;
+};
+
+/// Clients on one side, the three boxes of the renderer on the other. Knows no device.
+class Service : private TransportHandler {
+ public:
+  /// Listens at once; upgrades are refused until setReady(true). The boxes outlive the service, and the render thread ends
+  /// before the service does. Errors: "listen".
+  static Result<std::unique_ptr<Service>> open(ServiceConfig config, Mailbox& mailbox, FrameSlot& frames, StatusQueue& replies);
+  ~Service() override;
+
+  uint16_t port() const { return m_transport->port(); }
+  void run() { m_transport->run(); }       ///< the loop thread is the one that calls this; returns after a drain
+  void drain() { m_transport->drain(); }   ///< any thread
+  void setReady(bool ready);               ///< any thread
+
+ private:
+  Service(ServiceConfig config, Mailbox& mailbox, FrameSlot& frames, StatusQueue& replies);
+
+  // TransportHandler, service.cpp
+  bool acceptsClients() override { return m_ready; }
+  void onOpen(ConnectionId id) override;
+  void onMessage(ConnectionId id, std::string_view text) override;
+  std::optional<OutgoingMessage> nextMessage(ConnectionId id) override;
+  void onSent(ConnectionId) override {}
+  void onClose(ConnectionId id) override;
+  void onWake() override;
+  void onTick() override;
+  void onDrain() override;
+  HttpReply onHttp(const HttpRequest& request) override;
+
+  ClientSession* find(ConnectionId id);
+  void send(ClientSession& session, const protocol::ServerMessage& message);
+  void sendError(ClientSession& session, uint32_t seq, const Error& error);
+  void closeSession(ClientSession& session, CloseCode code, const std::string& reason);
+  void dropSlowReader(ClientSession& session);
+  void tellWatched();
+  void checkTimers(ClientSession& session, double now);
+
+  // service_messages.cpp: what clients say
+  friend struct MessageHandler;
+  void greet(ClientSession& session, const protocol::ClientHello& hello);
+  void edit(ClientSession& session, uint32_t seq, const std::vector<protocol::Edit>& edits);
+  void ask(ClientSession& session, uint32_t seq, Request request);
+
+  // service_replies.cpp: what the renderer says
+  friend struct ReplyHandler;
+  void routeReplies();
+  void describeForAll();
+  void broadcastScene(const SceneSummary& scene, protocol::SceneCause cause, ConnectionId except);
+  void sendStatus(ClientSession& session, const protocol::Status& status);
+  void checkErrorWaits(ClientSession& session, const FrameInfo& info);
+
+  // service_frames.cpp: pictures
+  void distributeFrames();
+  void offer(const std::shared_ptr<const EncodedFrame>& frame);
+
+  // service_http.cpp
+  std::string metrics() const;
+  uint64_t framesReplaced() const;         ///< of clients that are here and of those that left
+
+  ServiceConfig m_config;
+  Mailbox& m_mailbox;
+  FrameSlot& m_frames;
+  StatusQueue& m_replies;
+  std::unique_ptr<Transport> m_transport;
+  std::unique_ptr<EncodeWorker> m_encoder;
+  std::unique_ptr<LoaderWorker> m_loader;
+  std::atomic<bool> m_ready{false};        ///< written by the render thread
+
+  std::map<ConnectionId, ClientSession> m_sessions;
+  std::map<EncodingKey, std::shared_ptr<const EncodedFrame>> m_encoded;  ///< of the newest picture
+  ServiceCounters m_counters;
+  bool m_watched = false;
+  double m_aloneSince = 0.0;               ///< [s] no client since then
+
+  View m_view;                             ///< as the edits sent so far leave it; completes lenses of camera edits
+  uint64_t m_viewEdits = 0, m_viewEditsAtDescribe = 0;
+  std::set<ConnectionId> m_editors;        ///< edited since the others were last told
+  bool m_describing = false;               ///< a describe of our own is on its way
+  bool m_viewDoubtful = true;              ///< an edit was refused, or nothing is known yet
+  double m_lastBroadcast = 0.0, m_lastStatus = 0.0;  ///< [s]
+};
+
+}  // namespace limn::server

@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/base/clock.hpp"
+#include "server/convert.hpp"
+#include "server/service.hpp"
+
+namespace limn::server {
+namespace {
+
+constexpr double kBroadcastSeconds = 0.25;   ///< between two scenes sent because somebody else edits
+constexpr ConnectionId kNobody = 0;
+
+std::optional<float> finite(float value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; }
+
+}  // namespace
+
+/// One overload a reply. `session` is null when the client has left, or when the daemon itself had asked.
+struct ReplyHandler {
+  Service& service;
+  ClientSession* session;
+
+  void operator()(const EditAck& ack) const {
+    const bool effective = !ack.superseded && ack.cost != CostClass::none;
+    if (effective) service.m_editors.insert(ack.to.client);
+    if (!session) return;
+    if (effective) session->lastEffectiveSeq = ack.to.seq;
+    else forgetEdit(ack.to.seq);
+    service.send(*session, toWire(ack));
+  }
+  void operator()(const ErrorReply& reply) const {
+    service.m_viewDoubtful = true;
+    if (!session) return;
+    session->saving = false;
+    session->loading = false;
+    forgetEdit(reply.to.seq);
+    service.sendError(*session, reply.to.seq, reply.error);
+  }
+  void operator()(const DescribeReply& reply) const {
+    if (reply.to.client == kNobody) return onOwnDescription(*reply.scene);
+    if (!session) return;
+    const bool joined = reply.to.seq == session->helloSeq;
+    protocol::SceneMessage scene = toWire(*reply.scene, joined ? protocol::SceneCause::joined : protocol::SceneCause::asked);
+    if (!joined) scene.seq = reply.to.seq;
+    service.send(*session, scene);
+  }
+  void operator()(const LoadReply& reply) const {
+    service.m_view = reply.scene->view;
+    if (session) {
+      session->loading = false;
+      service.send(*session, protocol::Loaded{reply.to.seq, reply.loadSeconds, reply.scene->sceneRevision, {reply.scene->hash}});
+    }
+    service.broadcastScene(*reply.scene, protocol::SceneCause::loaded, kNobody);
+  }
+  void operator()(const PickReply& reply) const {
+    if (session) service.send(*session, toWire(reply));
+  }
+  void operator()(const SaveReply& reply) const {
+    if (!session) return;
+    session->saving = false;
+    service.send(*session, protocol::Saved{reply.to.seq, reply.exr->size(), protocol::Encoding::exr});
+    if (!session->closing && !session->queueFile(reply.to.seq, reply.exr)) service.dropSlowReader(*session);
+    service.m_transport->wantWrite(session->id());
+  }
+  void operator()(const WaitReply& reply) const {
+    if (!session) return;
+    std::erase_if(session->errorWaits, [&](const ErrorWait& wait) { return wait.seq == reply.to.seq; });
+    service.send(*session, protocol::Waited{reply.to.seq, reply.steps, {reply.filmHash},
+                                            finite(service.m_replies.status().estimatedError)});
+  }
+
+ private:
+  /// No picture will ever show this edit: waits must not wait for it.
+  void forgetEdit(uint32_t seq) const {
+    if (session->lastEditSeq == seq) session->lastEditSeq = session->lastEffectiveSeq;
+  }
+  void onOwnDescription(const SceneSummary& scene) const {
+    service.m_describing = false;
+    if (service.m_viewEdits == service.m_viewEditsAtDescribe) {
+      service.m_view = scene.view;
+      service.m_viewDoubtful = false;
+    }
+    const std::set<ConnectionId> editors = std::exchange(service.m_editors, {});
+    if (editors.empty()) return;
+    service.broadcastScene(scene, protocol::SceneCause::edited, editors.size() == 1 ? *editors.begin() : kNobody);
+  }
+};
+
+void Service::routeReplies() {
+  for (const Reply& reply : m_replies.drain()) {
+    const Origin to = std::visit([](const auto& r) { return r.to; }, reply);
+    ClientSession* session = find(to.client);
+    if (session && session->unanswered > 0) --session->unanswered;
+    std::visit(ReplyHandler{*this, session}, reply);
+  }
+  for (const ErrorReply& failed : m_loader->takeFailed()) {
+    ClientSession* session = find(failed.to.client);
+    if (!session) continue;
+    session->loading = false;
+    if (session->unanswered > 0) --session->unanswered;
+    sendError(*session, failed.to.seq, failed.error);
+  }
+}
+
+void Service::describeForAll() {
+  const double now = nowSeconds();
+  const bool needed = m_viewDoubtful || m_sessions.size() > 1;
+  if (!needed) m_editors.clear();
+  if (!needed || m_describing || now - m_lastBroadcast < kBroadcastSeconds) return;
+  m_lastBroadcast = now;
+  m_viewEditsAtDescribe = m_viewEdits;
+  m_describing = m_mailbox.push(DescribeRequest{});
+}
+
+void Service::broadcastScene(const SceneSummary& scene, protocol::SceneCause cause, ConnectionId except) {
+  const protocol::ServerMessage message = toWire(scene, cause);
+  for (auto& [id, session] : m_sessions)
+    if (session.greeted && id != except) send(session, message);
+}
+
+void Service::sendStatus(ClientSession& session, const protocol::Status& status) {
+  constexpr size_t kMaxWaiting = 8;   // a reader who is behind gets the next one
+  if (session.queuedMessages() > kMaxWaiting) return;
+  protocol::Status mine = status;
+  mine.clients = uint32_t(m_sessions.size());
+  mine.framesSent = session.framesSent;
+  mine.framesReplaced = session.framesReplaced;
+  if (session.lastStatus == mine) return;
+  session.lastStatus = mine;
+  send(session, mine);
+}
+
+void Service::checkErrorWaits(ClientSession& session, const FrameInfo& info) {
+  if (session.errorWaits.empty()) return;
+  uint32_t applied = 0;
+  for (const Origin& origin : info.applied)
+    if (origin.client == session.id()) applied = origin.seq;
+  if (applied < session.lastEditSeq) return;
+  for (ErrorWait& wait : session.errorWaits) {
+    const bool reached = info.estimatedError <= wait.error || info.phase == Phase::converged;
+    if (reached && !wait.asked) wait.asked = m_mailbox.push(WaitRequest{{session.id(), wait.seq}, 1});
+  }
+}
+
+}  // namespace limn::server
