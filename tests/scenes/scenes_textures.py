@@ -129,7 +129,7 @@ def _place(scene, index, name, exhibit):
 
 
 def _position(index):
-    return (SPACING * (index % COLUMNS - 0.5 * (COLUMNS - 1)), SPACING * (2.2 - index // COLUMNS), 0.2)
+    return (SPACING * (index % COLUMNS - 0.5 * (COLUMNS - 1)), SPACING * (2.0 - index // COLUMNS), 0.2)
 
 
 def gallery():
@@ -147,7 +147,7 @@ def gallery():
     x, y, z = _position(len(exhibits) + 1)
     sheared = [0.8, 0.0, 0.0, 0.0, 0.4, 0.8, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, x, y, z, 1.0]
     scene.add_node("Matrix with shear", mesh=mesh, matrix=sheared)
-    scene.add_light("Lamp", "point", 14.0, (1.0, 0.95, 0.9), (-2.0, 2.5, 4.0))
+    scene.add_light("Lamp", "point", 45.0, (1.0, 0.95, 0.9), (-2.0, 2.5, 4.0))
     panel = scene.add_material(materials.emitter("Panel", (3.0, 3.0, 3.0)))
     scene.add_object("Panel", shapes.grid((3.0, -1.0, 6.0), (0.0, 2.0, 0.0), (2.0, 0.0, 0.0)), panel)
     scene.add_camera("Camera", (0.0, 0.0, 7.5), (0.0, 0.0, 0.0), 44.0)
