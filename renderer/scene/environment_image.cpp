@@ -1,0 +1,103 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "renderer/scene/asset_files.hpp"
+#include "renderer/scene/gltf_loader.hpp"
+#include "renderer/scene/oiio_input.hpp"
+
+namespace limn {
+namespace {
+
+constexpr int kMaxChannels = 64;
+
+const char* readerOf(const std::vector<uint8_t>& bytes) {
+  constexpr uint8_t kExr[4] = {0x76, 0x2f, 0x31, 0x01};
+  if (bytes.size() >= 4 && std::memcmp(bytes.data(), kExr, 4) == 0) return "openexr";
+  if (bytes.size() >= 2 && bytes[0] == '#' && bytes[1] == '?') return "hdr";
+  return nullptr;
+}
+
+Result<void> checkHeader(OIIO::ImageInput& input, const LoadLimits& limits) {
+  const OIIO::ImageSpec spec = input.spec();
+  if (spec.deep || input.seek_subimage(1, 0)) return Error{"unsupported", "deep and multi-part images are not supported", ""};
+  if (!input.seek_subimage(0, 0)) return Error{"bad-file", "the image cannot be read: " + oiioMessage(input), ""};
+  if (spec.width < 1 || spec.height < 1 || spec.depth != 1) return Error{"bad-file", "the image has no texels", ""};
+  if (spec.nchannels < 1 || spec.nchannels > kMaxChannels) return Error{"unsupported", "the image has too many channels", ""};
+  const uint64_t bytes = uint64_t(spec.width) * uint64_t(spec.height) * 4 * sizeof(float);
+  if (uint32_t(std::max(spec.width, spec.height)) > limits.maxImageSide || bytes > limits.maxImageBytes) {
+    return Error{"limit", "an image of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) + " is over the limit", ""};
+  }
+  return {};
+}
+
+/// The channels that are red, green and blue; one channel stands for all three.
+std::array<int, 3> colorChannels(const OIIO::ImageSpec& spec) {
+  std::array<int, 3> found{};
+  for (int c = 0; c < 3; ++c) {
+    const char* const name = c == 0 ? "R" : c == 1 ? "G" : "B";
+    const auto at = std::find(spec.channelnames.begin(), spec.channelnames.end(), name);
+    found[size_t(c)] = at != spec.channelnames.end() ? int(at - spec.channelnames.begin()) : std::min(c, spec.nchannels < 3 ? 0 : 2);
+  }
+  return found;
+}
+
+bool readRows(OIIO::ImageInput& input, Image& image, uint64_t& broken) {
+  const OIIO::ImageSpec spec = input.spec();
+  const std::array<int, 3> channels = colorChannels(spec);
+  const size_t stride = size_t(spec.nchannels);
+  std::vector<float> all(size_t(spec.width) * size_t(spec.height) * stride);
+  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, all.data())) return false;
+  image.rgbaF.resize(size_t(spec.width) * size_t(spec.height) * 4);
+  for (size_t i = 0; i < image.rgbaF.size() / 4; ++i) {
+    for (size_t c = 0; c < 3; ++c) {
+      const float v = all[i * stride + size_t(channels[c])];
+      const bool good = std::isfinite(v) && v >= 0.0f;
+      broken += !good;
+      image.rgbaF[i * 4 + c] = good ? v : 0.0f;
+    }
+    image.rgbaF[i * 4 + 3] = 1.0f;
+  }
+  return true;
+}
+
+Result<Image> load(const std::filesystem::path& file, const LoadLimits& limits, std::vector<std::string>& notes) {
+  std::error_code failure;
+  const std::filesystem::path real = std::filesystem::canonical(file, failure);
+  if (failure) return Error{"io", "cannot be opened: " + failure.message(), ""};
+  auto root = AssetRoot::open(real.parent_path());
+  if (!root) return root.error();
+  auto reader = root->openFile(real.filename().string(), limits.maxFileBytes);
+  if (!reader) return reader.error();
+  auto bytes = reader->read(0, reader->size());
+  if (!bytes) return bytes.error();
+
+  const char* const name = readerOf(*bytes);
+  if (!name) return Error{"unsupported", "the environment is neither Radiance HDR nor OpenEXR", ""};
+  OIIO::Filesystem::IOMemReader memory(bytes->data(), bytes->size());
+  auto input = openOiio(name, memory);
+  if (!input) return input.error();
+  if (auto good = checkHeader(**input, limits); !good) return good.error();
+
+  Image image;
+  image.name = file.filename().string();
+  image.width = uint32_t((*input)->spec().width);
+  image.height = uint32_t((*input)->spec().height);
+  uint64_t broken = 0;
+  if (!readRows(**input, image, broken)) return Error{"bad-file", "the image cannot be decoded: " + oiioMessage(**input), ""};
+  if (broken > 0) notes.push_back(std::to_string(broken) + " values of the environment that were not finite or negative became 0");
+  return image;
+}
+
+}  // namespace
+
+Result<Image> loadEnvironmentImage(const std::filesystem::path& file, const LoadLimits& limits, std::vector<std::string>& notes) {
+  Result<Image> image = load(file, limits, notes);
+  if (image) return image;
+  Error error = image.error();
+  error.place = file.filename().string();
+  return error;
+}
+
+}  // namespace limn

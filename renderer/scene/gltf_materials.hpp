@@ -1,0 +1,13 @@
+#pragma once
+#include "renderer/scene/gltf_document.hpp"
+
+namespace limn::gltf {
+
+/// All materials, in the file's order, with the images that they sample. Factors outside their range are clamped and noted.
+void readMaterials(Document& document, Scene& scene);
+
+/// KHR_lights_punctual's lights and the cameras, in the file's order. A colour above 1 moves into the intensity.
+void readLights(const Document& document, Scene& scene);
+void readCameras(const Document& document, Scene& scene);
+
+}  // namespace limn::gltf
