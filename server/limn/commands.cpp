@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "renderer/base/log.hpp"
+
 namespace limn {
 namespace {
 
@@ -19,9 +21,10 @@ std::string overview() {
 
 }  // namespace
 
-std::vector<Command> allCommands() { return {compareCommand(), mergeCommand(), devicesCommand()}; }
+std::vector<Command> allCommands() { return {renderCommand(), compareCommand(), mergeCommand(), devicesCommand()}; }
 
 int runLimn(const std::vector<std::string>& words) {
+  setLogLevel(LogLevel::warning);  // stderr is for what went wrong
   if (words.empty()) return reportFailure("limn", usageError("no command; limn --help lists them"));
   if (words[0] == "--help" || words[0] == "-h") {
     std::fputs(overview().c_str(), stdout);

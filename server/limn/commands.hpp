@@ -15,6 +15,7 @@ Command compareCommand();
 Command devicesCommand();
 Command infoCommand();
 Command mergeCommand();
+Command renderCommand();
 
 /// Every subcommand, in the order of the help.
 std::vector<Command> allCommands();

@@ -27,8 +27,8 @@ struct MergePart {
 /// Reads the range from the metadata. Errors: "bad-part" when it is absent or unreadable.
 Result<MergePart> mergePartOf(FilmImage header, const std::string& place);
 
-/// The parts in sample order; not empty. Errors name the files and what is wrong: "mismatch" (size, layers, scene, seed,
-/// technique, parameters, view differ), "overlap" (also a part given twice), "gap" (also when sample 0 is missing).
+/// The parts in sample order; not empty. Errors name the files and what is wrong: "mismatch" (size, layers, scene,
+/// seed, technique, parameters, view differ), "overlap" (also a part given twice), "gap" (also when sample 0 lacks).
 Result<std::vector<MergePart>> orderParts(std::vector<MergePart> parts);
 
 /// Adds up parts in sample order, in double: every layer is the mean weighted by each pixel's sample count ("samples",

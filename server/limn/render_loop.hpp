@@ -1,0 +1,43 @@
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "server/limn/render_options.hpp"
+
+namespace limn {
+
+/// What the loop knows after a pass.
+struct PassState {
+  uint32_t steps = 0;                  ///< passes done
+  double error = 0.0;                  ///< estimated relMSE
+  bool converged = false;
+};
+
+/// The film at one moment, on its way to a file.
+struct CheckpointTaken {
+  CheckpointRequest request;
+  double seconds = 0.0;                ///< of rendering when it was taken: the end of a pass, or the end of the render
+  PassState state;
+};
+
+struct RenderHooks {
+  /// One more pass; the same number of steps when there is none left.
+  std::function<Result<PassState>()> pass;
+  /// Its time does not count.
+  std::function<Result<void>(const CheckpointTaken&)> takeCheckpoint;
+  /// [s], monotonic.
+  std::function<double()> now;
+};
+
+struct RenderOutcome {
+  double seconds = 0.0;                ///< of rendering, from the first step
+  PassState state;
+  std::vector<CheckpointTaken> checkpoints;
+};
+
+/// Passes until the rule or convergence stops them; at least one. Each checkpoint is taken at the first end of a pass
+/// at or after its time. Those that the end forestalls show the final film. The first error of a hook ends it.
+Result<RenderOutcome> renderUntil(const StopRule& stop, const std::vector<CheckpointRequest>& checkpoints,
+                                  const RenderHooks& hooks);
+
+}  // namespace limn
