@@ -2,8 +2,8 @@
 
 add_library(limn_options INTERFACE)
 target_compile_options(limn_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Werror)
-# g++ 12 warns of overlapping copies inside its own std::string (GCC bug 105651).
-target_compile_options(limn_options INTERFACE -Wno-restrict)
+# Vulkan structs are initialised by their first fields. g++ 12 warns of overlapping copies inside its own std::string (GCC bug 105651).
+target_compile_options(limn_options INTERFACE -Wno-missing-field-initializers -Wno-restrict)
 target_compile_definitions(limn_options INTERFACE GLM_FORCE_DEPTH_ZERO_TO_ONE)
 target_include_directories(limn_options INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR})
 if(LIMN_SANITIZE)
