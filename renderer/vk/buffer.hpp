@@ -35,12 +35,12 @@ struct BufferDesc {
   VkFormat texelFormat = VK_FORMAT_UNDEFINED;  ///< element of the view, with BufferUsage::texel
 };
 
-/// A buffer with its own memory. Transfer usage is always added, so upload(), fill() and readBack() work on every buffer.
-/// Contents are undefined until written. Destroying one that the device still uses is safe. Render thread.
+/// A buffer with its own memory. Transfer usage is always added, so upload(), fill() and readBack() work on every
+/// buffer. Contents are undefined until written. Destroying one that the device still uses is safe. Render thread.
 class Buffer {
  public:
-  /// Checks the device's limits before it allocates. Errors: "limit" (over a limit, which is named), "unsupported" (a texel
-  /// format the device cannot read from a buffer), "out-of-memory".
+  /// Checks the device's limits before it allocates. Errors: "limit" (over a limit, which is named), "unsupported"
+  /// (a texel format the device cannot read from a buffer), "out-of-memory".
   static Result<Buffer> create(Device& device, const BufferDesc& desc);
 
   Buffer() = default;
@@ -55,8 +55,8 @@ class Buffer {
   VkBuffer handle() const { return m_handle; }
   /// The view over the whole buffer; null without BufferUsage::texel.
   VkBufferView view() const { return m_view; }
-  /// Host address of byte 0, or null when this memory is not mapped. Coherent: no flush is needed, only that the device is
-  /// not using the bytes.
+  /// Host address of byte 0, or null when this memory is not mapped. Coherent: no flush is needed, only that the
+  /// device is not using the bytes.
   void* mapped() const { return m_mapped; }
   /// The mapped bytes as an array. Only on mapped buffers.
   template <class T>

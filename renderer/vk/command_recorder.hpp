@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <type_traits>
 
 #include "renderer/vk/buffer.hpp"
 #include "renderer/vk/compute_pipeline.hpp"
@@ -46,9 +47,10 @@ std::span<const std::byte> pushBytes(const T& value) {
   return std::as_bytes(std::span<const T, 1>(&value, 1));
 }
 
-/// Records one submission: begin, commands, end, Device::submit; then it can begin again. What the environment breaks while
-/// recording is kept and comes out of submit(). Commands of one recording run in order but overlap: put barrier() between a
-/// writer and its reader. Between submissions nothing is needed, end() has one. Render thread.
+/// Records one submission: begin, commands, end, Device::submit; then it can begin again. What the environment
+/// breaks while recording is kept and comes out of submit(). Commands of one recording run in order but overlap:
+/// put barrier() between a writer and its reader. Between submissions nothing is needed, end() has one. Render
+/// thread.
 class CommandRecorder {
  public:
   explicit CommandRecorder(Device& device);
@@ -59,16 +61,18 @@ class CommandRecorder {
   void begin();
   void end();
 
-  /// Runs gx × gy × gz workgroups. `bindings` covers the pipeline's layout exactly, `pushConstants` is as long as the pipeline
-  /// says. A count of 0 runs nothing.
+  /// Runs gx × gy × gz workgroups. `bindings` covers the pipeline's layout exactly, `pushConstants` is as long as
+  /// the pipeline says. A count of 0 runs nothing.
   void dispatch(const ComputePipeline& pipeline, std::span<const Binding> bindings,
                 std::span<const std::byte> pushConstants, uint32_t gx, uint32_t gy = 1, uint32_t gz = 1);
-  /// As dispatch(), the three counts read by the device from `counts` at `offset` (BufferUsage::indirect, multiple of 4).
+  /// As dispatch(), the three counts read by the device from `counts` at `offset` (BufferUsage::indirect, multiple
+  /// of 4).
   void dispatchIndirect(const ComputePipeline& pipeline, std::span<const Binding> bindings,
                         std::span<const std::byte> pushConstants, const Buffer& counts, size_t offset = 0);
   /// A dispatch of no workgroup, for drivers that compile at first use: bind what the real dispatches bind.
   void warmUp(const ComputePipeline& pipeline, std::span<const Binding> bindings);
-  /// All earlier shader and transfer writes are visible to all later shader, transfer and indirect reads and to the host.
+  /// All earlier shader and transfer writes are visible to all later shader, transfer and indirect reads and to the
+  /// host.
   void barrier();
   void copyBuffer(const Buffer& src, size_t srcOffset, const Buffer& dst, size_t dstOffset, size_t size);
   /// Offset and size are multiples of 4; size 0: to the end.
@@ -83,7 +87,8 @@ class CommandRecorder {
  private:
   friend class Device;
   friend class Queue;
-  void bind(const ComputePipeline& pipeline, std::span<const Binding> bindings, std::span<const std::byte> pushConstants);
+  void bind(const ComputePipeline& pipeline, std::span<const Binding> bindings,
+            std::span<const std::byte> pushConstants);
   void fail(VkResult result, const char* call);
 
   Device& m_device;

@@ -16,6 +16,8 @@ enum class BindingKind {
   storageImage,  ///< image2DArray
 };
 
+VkDescriptorType descriptorType(BindingKind kind);
+
 /// One binding of set 0 as the shader declares it.
 struct BindingSlot {
   uint32_t binding = 0;
@@ -33,8 +35,8 @@ struct PipelineDesc {
 /// A compute pipeline with its layout. Render thread.
 class ComputePipeline {
  public:
-  /// Takes milliseconds; some drivers compile at the first dispatch instead (see CommandRecorder::warmUp). Errors: "device",
-  /// "out-of-memory".
+  /// Takes milliseconds; some drivers compile at the first dispatch instead (see CommandRecorder::warmUp). Errors:
+  /// "device", "out-of-memory".
   static Result<ComputePipeline> create(Device& device, const PipelineDesc& desc);
 
   ComputePipeline() = default;
@@ -50,7 +52,7 @@ class ComputePipeline {
   const std::vector<BindingSlot>& slots() const { return m_slots; }
   uint32_t pushConstantBytes() const { return m_pushConstantBytes; }
   bool usesPushDescriptors() const { return m_pushDescriptors; }
-  /// True the first time only: counts PipelineStats::firstUses.
+  /// Counts PipelineStats::firstUses at the first call.
   void noteUse() const;
 
  private:

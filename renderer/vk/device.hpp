@@ -15,6 +15,7 @@ class CommandRecorder;
 class Instance;
 class PipelineCache;
 class Queue;
+class ValidationLog;
 
 /// How many compute pipelines the device has made, and what that cost. A test that compares two snapshots proves that
 /// nothing is compiled after warm-up: some drivers compile at the first dispatch, which `firstUses` counts.
@@ -36,9 +37,9 @@ class Device {
  public:
   static constexpr uint64_t kForever = ~uint64_t(0);
 
-  /// Errors: "no-device" (nothing matches `select`), "unsupported" (a needed feature or the validation layer is absent),
-  /// "device" (the driver failed). With a cacheDir, software drivers keep their compiled shaders there as well; that is told
-  /// to them through the environment, so open the device before other threads read it.
+  /// Errors: "no-device" (nothing matches `select`), "unsupported" (a needed feature or the validation layer is
+  /// absent), "device" (the driver failed). With a cacheDir, software drivers keep their compiled shaders there as
+  /// well; that is told to them through the environment, so open the device before other threads read it.
   static Result<std::unique_ptr<Device>> open(const DeviceOptions& options);
   /// Every device the machine has, in the order in which indices count.
   static Result<std::vector<DeviceInfo>> list();
@@ -55,8 +56,8 @@ class Device {
   /// True once a call answered VK_ERROR_DEVICE_LOST: nothing works any more, the process must start anew.
   bool lost() const;
 
-  /// Hands an ended recording to the queue and returns the timeline value that will say it is done. The recorder can begin
-  /// again at once. Errors of recording come out here. Errors: "device-lost", "out-of-memory", "device".
+  /// Hands an ended recording to the queue and returns the timeline value that will say it is done. The recorder
+  /// can begin again at once. Errors of recording come out here. Errors: "device-lost", "out-of-memory", "device".
   Result<uint64_t> submit(CommandRecorder& recorder);
   /// Blocks until `value` was reached. Errors: "timeout", "device-lost".
   Result<void> wait(uint64_t value, uint64_t timeoutNs = kForever);
@@ -75,9 +76,12 @@ class Device {
   std::string pipelineCachePath() const;
 
   bool validation() const { return m_options.validation; }
+  /// Warnings and errors so far; 0 without DeviceOptions::validation.
   uint64_t validationMessageCount() const;
   /// The first few messages, for a test's output.
   std::vector<std::string> validationMessages() const;
+  /// The same, for who wants to see what the device's own end says.
+  std::shared_ptr<const ValidationLog> validationLog() const;
 
   // For the other objects of this layer.
   VkDevice handle() const { return m_handle; }
@@ -91,8 +95,8 @@ class Device {
   VkPipelineCache pipelineCache() const;
   /// Shown by validation messages and captures; does nothing without VK_EXT_debug_utils.
   void setName(VkObjectType type, uint64_t handle, const std::string& name) const;
-  /// Runs `destroy` once everything submitted so far is done: at once when it is, else at a later submit or wait. This is
-  /// why a buffer may be dropped while the device still reads it.
+  /// Runs `destroy` once everything submitted so far is done: at once when it is, else at a later submit or wait.
+  /// This is why a buffer may be dropped while the device still reads it.
   void retire(std::function<void()> destroy);
 
  private:

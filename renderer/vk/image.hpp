@@ -19,7 +19,8 @@ struct ImageDesc {
   std::string owner;
 };
 
-/// A 2D array image with its view and sampler, device-local, one mip level, always in VK_IMAGE_LAYOUT_GENERAL. Render thread.
+/// A 2D array image with its view and sampler, device-local, one mip level, always in VK_IMAGE_LAYOUT_GENERAL.
+/// Render thread.
 class Image {
  public:
   /// Errors: "limit", "unsupported" (the format cannot do what is asked), "out-of-memory".
@@ -41,7 +42,7 @@ class Image {
   Result<void> uploadLayer(uint32_t layer, std::span<const std::byte> texels);
 
  private:
-  Result<void> allocate();
+  Result<void> allocate(const std::string& name);
   Result<void> createView(const ImageDesc& desc);
   void destroy();
 

@@ -35,7 +35,8 @@ class Instance {
 
   VkInstance handle() const { return m_handle; }
   bool hasDebugUtils() const { return m_debugUtils; }
-  const ValidationLog& log() const { return m_log; }
+  /// Outlives the instance for who holds it, so that the messages of its end are seen too.
+  std::shared_ptr<const ValidationLog> log() const { return m_log; }
   /// In the driver's order, which is the order of Device::list().
   Result<std::vector<VkPhysicalDevice>> physicalDevices() const;
 
@@ -46,7 +47,7 @@ class Instance {
   VkInstance m_handle = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT m_messenger = VK_NULL_HANDLE;
   bool m_debugUtils = false;
-  ValidationLog m_log;
+  std::shared_ptr<ValidationLog> m_log = std::make_shared<ValidationLog>();
 };
 
 }  // namespace limn::vk

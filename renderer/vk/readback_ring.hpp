@@ -12,15 +12,17 @@ namespace limn::vk {
 
 class CommandRecorder;
 
-/// N host-cached buffers through which results leave the device without a stop: record into a slot, submit, go on, and read the
-/// slot when its timeline value was reached. Slots leave in the order in which they were taken. Render thread.
+/// N host-cached buffers through which results leave the device without a stop: record into a slot, submit, go on,
+/// and read the slot when its timeline value was reached. Slots leave in the order in which they were taken. Render
+/// thread.
 class ReadbackRing {
  public:
   /// Errors as Buffer::create.
   static Result<ReadbackRing> create(Device& device, size_t slotBytes, uint32_t slotCount, const std::string& name,
                                      const std::string& owner);
 
-  /// A free slot, or none when all are waiting to be read. A shader may write `buffer(slot)` itself; else record copy().
+  /// A free slot, or none when all are waiting to be read. A shader may write `buffer(slot)` itself; else record
+  /// copy().
   std::optional<uint32_t> take();
   /// Storage buffer of the slot; mapped.
   const Buffer& buffer(uint32_t slot) const;

@@ -15,8 +15,9 @@ struct StageTime {
   double ms = 0;  ///< device time [ms]
 };
 
-/// Device time of named stages of one submission: reset, then begin/end pairs (not nested) in one recording; read when its timeline
-/// value was reached. Keep one pool for each submission in flight. On a queue without timestamps the times are 0. Render thread.
+/// Device time of named stages of one submission: reset, then begin/end pairs (not nested) in one recording; read
+/// when its timeline value was reached. Keep one pool for each submission in flight. On a queue without timestamps
+/// the times are 0. Render thread.
 class TimestampPool {
  public:
   /// Errors: "out-of-memory".

@@ -7,9 +7,14 @@
 
 namespace limn::vk {
 
-/// Writes `bytes` to `dst` at `offset`. Waits for the device first, so nothing that runs sees half of it: memcpy where the
-/// buffer is mapped, else through a staging buffer. For edits and loading, not for every frame. Render thread.
-/// Errors: "out-of-memory", "device-lost".
+class CommandRecorder;
+
+/// Ends the recording, submits it and waits for it. Errors as Device::submit and Device::wait. Render thread.
+Result<void> submitAndWait(Device& device, CommandRecorder& recorder);
+
+/// Writes `bytes` to `dst` at `offset`. Waits for the device first, so nothing that runs sees half of it: memcpy
+/// where the buffer is mapped, else through a staging buffer. For edits and loading, not for every frame. Render
+/// thread. Errors: "out-of-memory", "device-lost".
 Result<void> upload(Device& device, Buffer& dst, size_t offset, std::span<const std::byte> bytes);
 
 template <class T>

@@ -7,6 +7,14 @@
 
 namespace limn::vk {
 
+/// A Vulkan struct, all zero but for its sType.
+template <class T>
+T typed(VkStructureType type) {
+  T value{};
+  value.sType = type;
+  return value;
+}
+
 /// "VK_ERROR_DEVICE_LOST" and its kin.
 const char* resultName(VkResult result);
 
