@@ -35,8 +35,10 @@ Result<FileReader> adopt(int descriptor, const std::string& name, uint64_t maxBy
     return Error{"path", "\"" + name + "\" is " + (S_ISDIR(facts.st_mode) ? "a directory" : "not a regular file"), ""};
   }
   if (reader.size() > maxBytes) {
-    return Error{"limit", "\"" + name + "\" has " + std::to_string(reader.size()) + " bytes, the limit is " +
-                              std::to_string(maxBytes), ""};
+    return Error{
+        "limit",
+        "\"" + name + "\" has " + std::to_string(reader.size()) + " bytes, the limit is " + std::to_string(maxBytes),
+        ""};
   }
   return reader;
 }
@@ -100,7 +102,8 @@ Result<std::vector<uint8_t>> FileReader::read(uint64_t offset, uint64_t count) c
 Result<AssetRoot> AssetRoot::open(const std::filesystem::path& folder) {
   std::error_code failure;
   std::filesystem::path real = std::filesystem::canonical(folder.empty() ? "." : folder, failure);
-  if (failure) return Error{"io", "the folder \"" + folder.filename().string() + "\" cannot be found: " + failure.message(), ""};
+  if (failure)
+    return Error{"io", "the folder \"" + folder.filename().string() + "\" cannot be found: " + failure.message(), ""};
   const int descriptor = ::open(real.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return fault(errno, folder.filename().string());
   return AssetRoot(descriptor, std::move(real));
@@ -129,7 +132,8 @@ Result<FileReader> AssetRoot::openFileByComponents(const std::string& relative, 
     const int next = openat(folder, (*parts)[i].c_str(), O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     const int number = errno;
     struct stat facts {};
-    const bool link = next < 0 && fstatat(folder, (*parts)[i].c_str(), &facts, AT_SYMLINK_NOFOLLOW) == 0 && S_ISLNK(facts.st_mode);
+    const bool link =
+        next < 0 && fstatat(folder, (*parts)[i].c_str(), &facts, AT_SYMLINK_NOFOLLOW) == 0 && S_ISLNK(facts.st_mode);
     close(folder);
     if (next < 0) return fault(link ? ELOOP : number, relative);
     folder = next;

@@ -12,7 +12,9 @@ namespace limn {
 class FileReader {
  public:
   explicit FileReader(int descriptor, uint64_t size) : m_descriptor(descriptor), m_size(size) {}
-  FileReader(FileReader&& other) noexcept : m_descriptor(other.m_descriptor), m_size(other.m_size) { other.m_descriptor = -1; }
+  FileReader(FileReader&& other) noexcept : m_descriptor(other.m_descriptor), m_size(other.m_size) {
+    other.m_descriptor = -1;
+  }
   FileReader& operator=(FileReader&&) = delete;
   ~FileReader();
 
@@ -25,7 +27,8 @@ class FileReader {
   uint64_t m_size;
 };
 
-/// The folder that a scene's files may come from. Nothing outside it is opened, through "..", links or otherwise. Any thread.
+/// The folder that a scene's files may come from. Nothing outside it is opened, through "..", links or otherwise. Any
+/// thread.
 class AssetRoot {
  public:
   /// `folder` itself may be reached through links. Errors: io.

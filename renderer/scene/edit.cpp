@@ -21,8 +21,8 @@ void assign(T& field, const std::optional<V>& value) {
 glm::dquat unit(const glm::dquat& q) { return std::abs(glm::dot(q, q) - 1.0) < 1e-12 ? q : glm::normalize(q); }
 
 bool same(const Material& a, const Material& b) {
-  return a.baseColor == b.baseColor && a.metallic == b.metallic && a.roughness == b.roughness && a.emission == b.emission &&
-         a.ior == b.ior && a.transmission == b.transmission && a.thickness == b.thickness &&
+  return a.baseColor == b.baseColor && a.metallic == b.metallic && a.roughness == b.roughness &&
+         a.emission == b.emission && a.ior == b.ior && a.transmission == b.transmission && a.thickness == b.thickness &&
          a.attenuationDistance == b.attenuationDistance && a.attenuationColor == b.attenuationColor &&
          a.specular == b.specular && a.specularColor == b.specularColor && a.clearcoat == b.clearcoat &&
          a.clearcoatRoughness == b.clearcoatRoughness && a.normalScale == b.normalScale &&
@@ -30,8 +30,8 @@ bool same(const Material& a, const Material& b) {
 }
 
 bool same(const Light& a, const Light& b) {
-  return a.color == b.color && a.intensity == b.intensity && a.range == b.range && a.innerConeAngle == b.innerConeAngle &&
-         a.outerConeAngle == b.outerConeAngle;
+  return a.color == b.color && a.intensity == b.intensity && a.range == b.range &&
+         a.innerConeAngle == b.innerConeAngle && a.outerConeAngle == b.outerConeAngle;
 }
 
 bool same(const Transform& a, const Transform& b) {
@@ -52,7 +52,11 @@ bool same(const View& a, const View& b) {
 class Batch {
  public:
   Batch(Scene& scene, ResolveSettings& resolve)
-      : m_scene(scene), m_resolve(resolve), m_environment(scene.environment), m_view(scene.view), m_resolveBefore(resolve) {}
+      : m_scene(scene),
+        m_resolve(resolve),
+        m_environment(scene.environment),
+        m_view(scene.view),
+        m_resolveBefore(resolve) {}
 
   void operator()(const SetMaterial& e) {
     Material& m = touch(m_materials, m_scene.materials, e.material);
@@ -87,7 +91,8 @@ class Batch {
     Node& node = m_scene.nodes[e.node];
     Transform& t = node.parentFromLocal;
     m_transforms.try_emplace(e.node, t);
-    if (t.matrix && (e.rotation || e.scale)) t.matrix.reset();  // TRS, which holds the nearest decomposition, takes over
+    if (t.matrix && (e.rotation || e.scale))
+      t.matrix.reset();  // TRS, which holds the nearest decomposition, takes over
     assign(t.translation, e.translation);
     assign(t.scale, e.scale);
     if (e.rotation) t.rotation = unit(*e.rotation);
@@ -171,8 +176,8 @@ std::optional<ToneMap> toneMapFromName(std::string_view name) {
 }
 
 bool ChangeSet::empty() const {
-  return !everything && materials.empty() && emissive.empty() && lights.empty() && nodes.empty() && !environment && !view &&
-         !resolve;
+  return !everything && materials.empty() && emissive.empty() && lights.empty() && nodes.empty() && !environment &&
+         !view && !resolve;
 }
 
 CostClass ChangeSet::cost() const {

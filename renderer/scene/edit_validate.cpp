@@ -44,7 +44,7 @@ class Checker {
  private:
   void number(float v, float low, float high, const char* field) {
     if (std::isfinite(v) && v >= low && v <= high) return;
-    std::string allowed = high == kUnbounded ? "at least " + std::to_string(low)
+    std::string allowed = high == kUnbounded   ? "at least " + std::to_string(low)
                           : low == -kUnbounded ? "finite"
                                                : "from " + std::to_string(low) + " to " + std::to_string(high);
     fail(field, std::string(field) + " is " + std::to_string(v) + " and must be " + allowed);
@@ -63,7 +63,8 @@ struct Validator {
     check.range(e.metallic, 0.0f, 1.0f, "metallic");
     check.range(e.roughness, 0.0f, 1.0f, "roughness");
     check.range(e.emission, 0.0f, kUnbounded, "emission");
-    if (e.ior) check.require(*e.ior == 0.0f || (std::isfinite(*e.ior) && *e.ior >= 1.0f), "ior", "ior must be 0 or at least 1");
+    if (e.ior)
+      check.require(*e.ior == 0.0f || (std::isfinite(*e.ior) && *e.ior >= 1.0f), "ior", "ior must be 0 or at least 1");
     check.range(e.transmission, 0.0f, 1.0f, "transmission");
     check.range(e.thickness, 0.0f, kUnbounded, "thickness");
     check.range(e.attenuationDistance, 0.0f, kUnbounded, "attenuationDistance");
@@ -74,7 +75,8 @@ struct Validator {
     check.range(e.clearcoatRoughness, 0.0f, 1.0f, "clearcoatRoughness");
     check.range(e.normalScale, -kUnbounded, kUnbounded, "normalScale");
     check.range(e.alphaCutoff, 0.0f, kUnbounded, "alphaCutoff");
-    if (e.alphaMode) check.require(*e.alphaMode <= AlphaMode::blend, "alphaMode", "alphaMode must be opaque, mask or blend");
+    if (e.alphaMode)
+      check.require(*e.alphaMode <= AlphaMode::blend, "alphaMode", "alphaMode must be opaque, mask or blend");
   }
 
   void operator()(const SetLight& e) {
@@ -86,7 +88,8 @@ struct Validator {
     check.range(e.outerConeAngle, 0.0f, kHalfPi, "outerConeAngle");
     check.range(e.innerConeAngle, 0.0f, kHalfPi, "innerConeAngle");
     if (!e.innerConeAngle && !e.outerConeAngle) return;
-    const bool ordered = e.innerConeAngle.value_or(light.innerConeAngle) < e.outerConeAngle.value_or(light.outerConeAngle);
+    const bool ordered =
+        e.innerConeAngle.value_or(light.innerConeAngle) < e.outerConeAngle.value_or(light.outerConeAngle);
     check.require(ordered, e.innerConeAngle ? "innerConeAngle" : "outerConeAngle",
                   "innerConeAngle must be smaller than outerConeAngle");
   }
@@ -100,7 +103,8 @@ struct Validator {
     }
     if (!e.scale) return;
     const glm::dvec3 size = glm::abs(*e.scale);
-    const bool good = finite(size) && std::min({size.x, size.y, size.z}) >= 1e-12 && std::max({size.x, size.y, size.z}) <= 1e12;
+    const bool good =
+        finite(size) && std::min({size.x, size.y, size.z}) >= 1e-12 && std::max({size.x, size.y, size.z}) <= 1e12;
     check.require(good, "scale", "the size of each scale must be from 1e-12 to 1e12");
   }
 
@@ -123,7 +127,8 @@ struct Validator {
     } else {
       check.require(std::isfinite(v.lens.ymag) && v.lens.ymag > 0.0f, "ymag", "ymag must be finite and above 0");
     }
-    check.require(std::isfinite(v.lens.znear) && v.lens.znear >= 0.0f, "znear", "znear must be finite and not negative");
+    check.require(std::isfinite(v.lens.znear) && v.lens.znear >= 0.0f, "znear",
+                  "znear must be finite and not negative");
   }
 
   void operator()(const SetResolve& e) {

@@ -21,13 +21,18 @@ const char* readerOf(const std::vector<uint8_t>& bytes) {
 
 Result<void> checkHeader(OIIO::ImageInput& input, const LoadLimits& limits) {
   const OIIO::ImageSpec spec = input.spec();
-  if (spec.deep || input.seek_subimage(1, 0)) return Error{"unsupported", "deep and multi-part images are not supported", ""};
+  if (spec.deep || input.seek_subimage(1, 0))
+    return Error{"unsupported", "deep and multi-part images are not supported", ""};
   if (!input.seek_subimage(0, 0)) return Error{"bad-file", "the image cannot be read: " + oiioMessage(input), ""};
   if (spec.width < 1 || spec.height < 1 || spec.depth != 1) return Error{"bad-file", "the image has no texels", ""};
-  if (spec.nchannels < 1 || spec.nchannels > kMaxChannels) return Error{"unsupported", "the image has too many channels", ""};
-  const uint64_t bytes = uint64_t(spec.width) * uint64_t(spec.height) * 4 * sizeof(float);
+  if (spec.nchannels < 1 || spec.nchannels > kMaxChannels)
+    return Error{"unsupported", "the image has too many channels", ""};
+  const uint64_t bytes =
+      uint64_t(spec.width) * uint64_t(spec.height) * uint64_t(std::max(4, spec.nchannels)) * sizeof(float);
   if (uint32_t(std::max(spec.width, spec.height)) > limits.maxImageSide || bytes > limits.maxImageBytes) {
-    return Error{"limit", "an image of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) + " is over the limit", ""};
+    return Error{"limit",
+                 "an image of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) + " is over the limit",
+                 ""};
   }
   return {};
 }
@@ -38,7 +43,8 @@ std::array<int, 3> colorChannels(const OIIO::ImageSpec& spec) {
   for (int c = 0; c < 3; ++c) {
     const char* const name = c == 0 ? "R" : c == 1 ? "G" : "B";
     const auto at = std::find(spec.channelnames.begin(), spec.channelnames.end(), name);
-    found[size_t(c)] = at != spec.channelnames.end() ? int(at - spec.channelnames.begin()) : std::min(c, spec.nchannels < 3 ? 0 : 2);
+    found[size_t(c)] =
+        at != spec.channelnames.end() ? int(at - spec.channelnames.begin()) : std::min(c, spec.nchannels < 3 ? 0 : 2);
   }
   return found;
 }
@@ -85,14 +91,17 @@ Result<Image> load(const std::filesystem::path& file, const LoadLimits& limits, 
   image.width = uint32_t((*input)->spec().width);
   image.height = uint32_t((*input)->spec().height);
   uint64_t broken = 0;
-  if (!readRows(**input, image, broken)) return Error{"bad-file", "the image cannot be decoded: " + oiioMessage(**input), ""};
-  if (broken > 0) notes.push_back(std::to_string(broken) + " values of the environment that were not finite or negative became 0");
+  if (!readRows(**input, image, broken))
+    return Error{"bad-file", "the image cannot be decoded: " + oiioMessage(**input), ""};
+  if (broken > 0)
+    notes.push_back(std::to_string(broken) + " values of the environment that were not finite or negative became 0");
   return image;
 }
 
 }  // namespace
 
-Result<Image> loadEnvironmentImage(const std::filesystem::path& file, const LoadLimits& limits, std::vector<std::string>& notes) {
+Result<Image> loadEnvironmentImage(const std::filesystem::path& file, const LoadLimits& limits,
+                                   std::vector<std::string>& notes) {
   Result<Image> image = load(file, limits, notes);
   if (image) return image;
   Error error = image.error();

@@ -64,11 +64,13 @@ std::vector<uint32_t> sparseTargets(const tinygltf::Model& model, const tinygltf
   const Source source = sourceOf(model, sparse.indices.bufferView, size_t(sparse.indices.byteOffset), bytes, false);
   std::vector<uint32_t> targets(size_t(sparse.count));
   toUnsigned(source, targets.size(), 1, sparse.indices.componentType, targets.data());
+  const std::string pointer = pointerOf("accessors", index, "sparse", "indices");
   for (size_t i = 0; i < targets.size(); ++i) {
-    const std::string pointer = pointerOf("accessors", index, "sparse", "indices");
     if (targets[i] >= accessor.count) {
-      fail("out-of-range", "sparse index " + std::to_string(i) + " is " + std::to_string(targets[i]) + ", there are " +
-                               std::to_string(accessor.count) + " elements", pointer);
+      fail("out-of-range",
+           "sparse index " + std::to_string(i) + " is " + std::to_string(targets[i]) + ", there are " +
+               std::to_string(accessor.count) + " elements",
+           pointer);
     }
     if (i > 0 && targets[i] <= targets[i - 1]) fail("bad-file", "sparse indices must increase", pointer);
   }
@@ -85,11 +87,13 @@ std::vector<Out> readAll(const Document& document, int index, uint32_t component
   if (!accessor.sparse.isSparse) return out;
 
   const std::vector<uint32_t> targets = sparseTargets(document.model, accessor, index);
-  const Source values = sourceOf(document.model, accessor.sparse.values.bufferView, size_t(accessor.sparse.values.byteOffset), packed, false);
+  const Source values = sourceOf(document.model, accessor.sparse.values.bufferView,
+                                 size_t(accessor.sparse.values.byteOffset), packed, false);
   std::vector<Out> replaced(targets.size() * components);
   read(values, accessor, targets.size(), replaced.data());
   for (size_t i = 0; i < targets.size(); ++i) {
-    std::copy_n(replaced.begin() + std::ptrdiff_t(i * components), components, out.begin() + std::ptrdiff_t(size_t(targets[i]) * components));
+    std::copy_n(replaced.begin() + std::ptrdiff_t(i * components), components,
+                out.begin() + std::ptrdiff_t(size_t(targets[i]) * components));
   }
   return out;
 }
@@ -97,15 +101,17 @@ std::vector<Out> readAll(const Document& document, int index, uint32_t component
 }  // namespace
 
 std::vector<float> readFloats(const Document& document, int index, uint32_t components, Integers integers) {
-  return readAll<float>(document, index, components, [&](Source source, const tinygltf::Accessor& a, uint64_t count, float* out) {
-    toFloats(source, count, components, a.componentType, a.normalized || integers == Integers::normalized, out);
-  });
+  return readAll<float>(
+      document, index, components, [&](Source source, const tinygltf::Accessor& a, uint64_t count, float* out) {
+        toFloats(source, count, components, a.componentType, a.normalized || integers == Integers::normalized, out);
+      });
 }
 
 std::vector<uint32_t> readUnsigned(const Document& document, int index, uint32_t components) {
-  return readAll<uint32_t>(document, index, components, [&](Source source, const tinygltf::Accessor& a, uint64_t count, uint32_t* out) {
-    toUnsigned(source, count, components, a.componentType, out);
-  });
+  return readAll<uint32_t>(document, index, components,
+                           [&](Source source, const tinygltf::Accessor& a, uint64_t count, uint32_t* out) {
+                             toUnsigned(source, count, components, a.componentType, out);
+                           });
 }
 
 uint64_t countOf(const Document& document, int index) { return document.model.accessors[size_t(index)].count; }

@@ -38,15 +38,16 @@ Layout layoutOf(const Value& accessor) {
 }
 
 /// `count` elements of `size` bytes read from the view that `part` names must lie in it.
-void checkReach(const Value& part, const Value& blame, const Value& views, uint64_t count, uint32_t size, uint32_t alignment,
-                bool strided) {
+void checkReach(const Value& part, const Value& blame, const Value& views, uint64_t count, uint32_t size,
+                uint32_t alignment, bool strided) {
   const Value view = views[part.need("bufferView").asIndex(views.size(), "bufferView")];
   const uint64_t offset = part.unsignedOr("byteOffset", 0);
   const uint64_t stride = strided ? view.unsignedOr("byteStride", size) : size;
   if (stride < size) view.need("byteStride").fail("bad-file", "byteStride is smaller than one element");
   const uint64_t length = view.need("byteLength").asUnsigned();
   if (!fits(offset, count, stride, size, length)) {
-    blame.fail("out-of-range", std::to_string(count) + " elements reach beyond their view of " + std::to_string(length) + " bytes");
+    blame.fail("out-of-range",
+               std::to_string(count) + " elements reach beyond their view of " + std::to_string(length) + " bytes");
   }
   if ((offset + view.unsignedOr("byteOffset", 0)) % alignment != 0) {
     part.fail("bad-file", "the data do not start at a multiple of the component's size");
@@ -74,7 +75,8 @@ void checkAccessor(const Value& accessor, const Value& views, const LoadLimits& 
   if (accessor.has("bufferView")) {
     checkReach(accessor, count, views, elements, layout.element, layout.component, true);
   } else if (elements > limits.maxVertices) {
-    count.fail("limit", std::to_string(elements) + " elements are more than the limit of " + std::to_string(limits.maxVertices));
+    count.fail("limit",
+               std::to_string(elements) + " elements are more than the limit of " + std::to_string(limits.maxVertices));
   }
   accessor.boolOr("normalized", false);
   if (const auto sparse = accessor.find("sparse")) checkSparse(*sparse, views, elements, layout);

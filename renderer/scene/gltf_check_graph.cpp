@@ -6,13 +6,14 @@
 namespace limn::gltf {
 namespace {
 
-constexpr const char* kLists[] = {"buffers", "bufferViews", "accessors", "meshes",   "nodes",   "skins", "scenes",
-                                  "cameras", "materials",   "textures",  "samplers", "images",  "animations"};
+constexpr const char* kLists[] = {"buffers", "bufferViews", "accessors", "meshes",   "nodes",  "skins",     "scenes",
+                                  "cameras", "materials",   "textures",  "samplers", "images", "animations"};
 
 void checkVersion(const Value& root) {
   const Value asset = root.need("asset").object();
   const Value version = asset.need("version");
-  if (!version.asString().starts_with("2.")) version.fail("unsupported", "glTF \"" + version.asString() + "\" is not 2.x");
+  if (!version.asString().starts_with("2."))
+    version.fail("unsupported", "glTF \"" + version.asString() + "\" is not 2.x");
   const std::string least = asset.stringOr("minVersion", "2.0");
   if (least != "2.0") asset.need("minVersion").fail("unsupported", "a loader of glTF " + least + " is asked for");
 }
@@ -22,7 +23,8 @@ void checkRequiredExtensions(const Value& root) {
   for (size_t i = 0; i < used.size(); ++i) used[i].asString();
   for (size_t i = 0; i < required.size(); ++i) {
     if (supportsExtension(required[i].asString())) continue;
-    required[i].fail("unsupported", "the file cannot be shown without \"" + required[i].asString() + "\", which is not supported");
+    required[i].fail("unsupported",
+                     "the file cannot be shown without \"" + required[i].asString() + "\", which is not supported");
   }
 }
 
@@ -31,15 +33,17 @@ bool oneOf(const std::string& text, std::initializer_list<const char*> allowed) 
 }
 
 struct AttributeRule {
-  const char* prefix;                         ///< of the semantic: "TEXCOORD_" stands for TEXCOORD_0, TEXCOORD_1 ...
+  const char* prefix;  ///< of the semantic: "TEXCOORD_" stands for TEXCOORD_0, TEXCOORD_1 ...
   std::initializer_list<const char*> types;
 };
-const AttributeRule kAttributeRules[] = {{"POSITION", {"VEC3"}}, {"NORMAL", {"VEC3"}},           {"TANGENT", {"VEC4"}},
+const AttributeRule kAttributeRules[] = {{"POSITION", {"VEC3"}},  {"NORMAL", {"VEC3"}},         {"TANGENT", {"VEC4"}},
                                          {"TEXCOORD_", {"VEC2"}}, {"COLOR_", {"VEC3", "VEC4"}}, {"JOINTS_", {"VEC4"}},
                                          {"WEIGHTS_", {"VEC4"}}};
 
-/// One attribute: its accessor exists, has the type of its name and `vertices` elements (0: whatever it has). Gives the count.
-uint64_t checkAttribute(const Value& index, const std::string& name, const Value& accessors, uint64_t vertices, bool isTarget) {
+/// One attribute: its accessor exists, has the type of its name and `vertices` elements (0: whatever it has). Gives the
+/// count.
+uint64_t checkAttribute(const Value& index, const std::string& name, const Value& accessors, uint64_t vertices,
+                        bool isTarget) {
   const Value accessor = accessors[index.asIndex(accessors.size(), "accessor")];
   const uint64_t count = accessor.need("count").asUnsigned();
   const std::string& type = accessor.need("type").asString();
@@ -49,11 +53,13 @@ uint64_t checkAttribute(const Value& index, const std::string& name, const Value
     if (!good) index.fail("bad-file", name + " cannot be of type " + type);
     const uint64_t component = accessor.need("componentType").asUnsigned();
     const bool joints = name.starts_with("JOINTS_");
-    if (joints && component != 5121 && component != 5123) index.fail("bad-file", "joints must be unsigned bytes or shorts");
+    if (joints && component != 5121 && component != 5123)
+      index.fail("bad-file", "joints must be unsigned bytes or shorts");
     if (!joints && component == 5125) index.fail("bad-file", name + " cannot have components of type unsigned int");
   }
   if (vertices != 0 && count != vertices) {
-    index.fail("bad-file", name + " has " + std::to_string(count) + " elements, POSITION has " + std::to_string(vertices));
+    index.fail("bad-file",
+               name + " has " + std::to_string(count) + " elements, POSITION has " + std::to_string(vertices));
   }
   return count;
 }
@@ -67,7 +73,8 @@ void checkAttributes(const Value& attributes, const Value& accessors, uint64_t v
 void checkIndices(const Value& index, const Value& accessors) {
   const Value accessor = accessors[index.asIndex(accessors.size(), "accessor")];
   const uint64_t component = accessor.need("componentType").asUnsigned();
-  const bool good = accessor.need("type").asString() == "SCALAR" && (component == 5121 || component == 5123 || component == 5125);
+  const bool good =
+      accessor.need("type").asString() == "SCALAR" && (component == 5121 || component == 5123 || component == 5125);
   if (!good) index.fail("bad-file", "indices must be unsigned integers");
   if (!accessor.has("bufferView")) index.fail("unsupported", "indices without a bufferView are not supported");
 }
@@ -96,7 +103,8 @@ void checkMeshes(const Value& root) {
     for (size_t j = 0; j < primitives.size(); ++j) checkPrimitive(primitives[j], root);
     const size_t targets = primitives[0].list("targets").size();
     for (size_t j = 1; j < primitives.size(); ++j) {
-      if (primitives[j].list("targets").size() != targets) primitives[j].fail("bad-file", "primitives differ in their number of morph targets");
+      if (primitives[j].list("targets").size() != targets)
+        primitives[j].fail("bad-file", "primitives differ in their number of morph targets");
     }
     checkWeights(meshes[i]);
   }
@@ -113,7 +121,8 @@ void checkSkins(const Value& root) {
     const Value accessor = accessors[matrices->asIndex(accessors.size(), "accessor")];
     const bool good = accessor.need("type").asString() == "MAT4" && accessor.need("componentType").asUnsigned() == 5126;
     if (!good) matrices->fail("bad-file", "inverse bind matrices must be float MAT4");
-    if (accessor.need("count").asUnsigned() < joints.size()) matrices->fail("bad-file", "there are fewer matrices than joints");
+    if (accessor.need("count").asUnsigned() < joints.size())
+      matrices->fail("bad-file", "there are fewer matrices than joints");
   }
 }
 
@@ -164,7 +173,8 @@ void checkForest(const Value& nodes) {
     for (size_t k = 0; k < children.size(); ++k) open.push_back(children[k].asIndex(nodes.size(), "node"));
   }
   for (size_t i = 0; i < nodes.size(); ++i) {
-    if (!reached[i] && nodes[i].has("children")) nodes[i].need("children").fail("bad-file", "the node is part of a cycle");
+    if (!reached[i] && nodes[i].has("children"))
+      nodes[i].need("children").fail("bad-file", "the node is part of a cycle");
   }
 }
 
@@ -193,7 +203,8 @@ void checkScenes(const Value& root) {
 void checkGraph(const Document& document) {
   const Value root = document.root(), nodes = root.list("nodes");
   if (nodes.size() > document.limits.maxNodes) {
-    nodes.fail("limit", std::to_string(nodes.size()) + " nodes are more than the limit of " + std::to_string(document.limits.maxNodes));
+    nodes.fail("limit", std::to_string(nodes.size()) + " nodes are more than the limit of " +
+                            std::to_string(document.limits.maxNodes));
   }
   checkMeshes(root);
   for (size_t i = 0; i < nodes.size(); ++i) checkNode(nodes[i], document);
@@ -208,7 +219,7 @@ void checkStructure(const Document& document) {
   checkRequiredExtensions(root);
   for (const char* name : kLists) {
     const Value list = root.list(name);
-    for (size_t i = 0; i < list.size(); ++i) list[i].object();
+    for (size_t i = 0; i < list.size(); ++i) list[i].object().stringOr("name", "");
   }
   checkBuffers(document);
   checkGraph(document);

@@ -41,7 +41,8 @@ void readGlb(Container& container, const FileReader& file) {
   if (word(header, 4) != 2) fail("unsupported", "GLB version " + std::to_string(word(header, 4)) + " is not 2", "");
   const uint64_t end = word(header, 8);
   if (end > file.size()) {
-    fail("bad-file", "the GLB says it has " + std::to_string(end) + " bytes, the file has " + std::to_string(file.size()), "");
+    fail("bad-file",
+         "the GLB says it has " + std::to_string(end) + " bytes, the file has " + std::to_string(file.size()), "");
   }
   if (end < 20) fail("bad-file", "the GLB has no JSON chunk", "");
 
@@ -70,7 +71,8 @@ std::string percentDecoded(std::string_view text, const std::string& pointer) {
       out += text[i];
       continue;
     }
-    const int high = i + 2 < text.size() ? hexDigit(text[i + 1]) : -1, low = i + 2 < text.size() ? hexDigit(text[i + 2]) : -1;
+    const int high = i + 2 < text.size() ? hexDigit(text[i + 1]) : -1,
+              low = i + 2 < text.size() ? hexDigit(text[i + 2]) : -1;
     if (high < 0 || low < 0) fail("bad-file", "the URI has a '%' without two hexadecimal digits", pointer);
     out += char(high * 16 + low);
     i += 2;
@@ -133,7 +135,8 @@ Container openContainer(const std::filesystem::path& file, const LoadOptions& op
   std::error_code failure;
   const std::filesystem::path real = std::filesystem::canonical(file, failure);
   if (failure) fail("io", "cannot be opened: " + failure.message(), "");
-  Container container{unwrap(AssetRoot::open(options.assetRoot.empty() ? real.parent_path() : options.assetRoot)), "", "", {}};
+  Container container{
+      unwrap(AssetRoot::open(options.assetRoot.empty() ? real.parent_path() : options.assetRoot)), "", "", {}};
   const std::filesystem::path below = real.lexically_relative(container.root.folder());
   if (below.empty() || *below.begin() == "..") fail("path", "the file is not below the asset root", "");
   container.folder = withSlash(below.parent_path().string());
@@ -144,12 +147,14 @@ Container openContainer(const std::filesystem::path& file, const LoadOptions& op
     return container;
   }
   const std::vector<uint8_t> text = unwrap(reader.read(0, reader.size()));
-  const size_t mark = text.size() >= 3 && text[0] == 0xef && text[1] == 0xbb && text[2] == 0xbf ? 3 : 0;  // UTF-8 byte order mark
+  const size_t mark =
+      text.size() >= 3 && text[0] == 0xef && text[1] == 0xbb && text[2] == 0xbf ? 3 : 0;  // UTF-8 byte order mark
   container.json.assign(text.begin() + std::ptrdiff_t(mark), text.end());
   return container;
 }
 
-std::vector<uint8_t> readUri(const Container& container, const std::string& uri, uint64_t maxBytes, const std::string& pointer) {
+std::vector<uint8_t> readUri(const Container& container, const std::string& uri, uint64_t maxBytes,
+                             const std::string& pointer) {
   if (uri.starts_with("data:")) return dataUri(uri, maxBytes, pointer);
   if (hasScheme(uri)) fail("path", "only relative paths and data URIs are opened", pointer);
   const std::string path = percentDecoded(uri, pointer);

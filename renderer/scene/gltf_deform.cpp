@@ -8,7 +8,8 @@ namespace {
 
 /// values += weight * the target's attribute, if the target has it.
 template <class Vec>
-void addTarget(const Document& document, const std::map<std::string, int>& target, const char* name, double weight, std::vector<Vec>& values) {
+void addTarget(const Document& document, const std::map<std::string, int>& target, const char* name, double weight,
+               std::vector<Vec>& values) {
   const auto found = target.find(name);
   if (found == target.end() || values.empty()) return;
   const std::vector<float> deltas = readFloats(document, found->second, 3);
@@ -17,7 +18,8 @@ void addTarget(const Document& document, const std::map<std::string, int>& targe
   }
 }
 
-void morph(const Document& document, const tinygltf::Primitive& source, const std::vector<double>& weights, Primitive& vertices) {
+void morph(const Document& document, const tinygltf::Primitive& source, const std::vector<double>& weights,
+           Primitive& vertices) {
   for (size_t t = 0; t < source.targets.size() && t < weights.size(); ++t) {
     if (weights[t] == 0.0) continue;
     addTarget(document, source.targets[t], "POSITION", weights[t], vertices.positions);
@@ -27,7 +29,8 @@ void morph(const Document& document, const tinygltf::Primitive& source, const st
 }
 
 /// The vertex's own matrix: the weighted mean of its joints'. Weights are taken relative to their sum.
-glm::dmat4 blend(const Attributes& attributes, const std::vector<glm::dmat4>& joints, size_t vertex, const std::string& pointer) {
+glm::dmat4 blend(const Attributes& attributes, const std::vector<glm::dmat4>& joints, size_t vertex,
+                 const std::string& pointer) {
   glm::dmat4 sum(0.0);
   double total = 0.0;
   for (size_t set = 0; set < attributes.joints.size(); ++set) {
@@ -36,8 +39,10 @@ glm::dmat4 blend(const Attributes& attributes, const std::vector<glm::dmat4>& jo
       if (!(weight > 0.0) || !std::isfinite(weight)) continue;
       const uint32_t joint = attributes.joints[set][vertex * 4 + c];
       if (joint >= joints.size()) {
-        fail("out-of-range", "vertex " + std::to_string(vertex) + " hangs on joint " + std::to_string(joint) + " of " +
-                                 std::to_string(joints.size()), pointer + "/attributes/JOINTS_" + std::to_string(set));
+        fail("out-of-range",
+             "vertex " + std::to_string(vertex) + " hangs on joint " + std::to_string(joint) + " of " +
+                 std::to_string(joints.size()),
+             pointer + "/attributes/JOINTS_" + std::to_string(set));
       }
       sum += joints[joint] * weight;
       total += weight;
@@ -65,10 +70,11 @@ void skin(const std::vector<glm::dmat4>& joints, const std::string& pointer, Att
 
 }  // namespace
 
-void deform(const Document& document, const tinygltf::Primitive& source, const Deformation& deformation, const std::string& pointer,
-            Attributes& attributes) {
+void deform(const Document& document, const tinygltf::Primitive& source, const Deformation& deformation,
+            const std::string& pointer, Attributes& attributes) {
   morph(document, source, deformation.morphWeights, attributes.vertices);
-  if (!deformation.localFromBind.empty() && !attributes.joints.empty()) skin(deformation.localFromBind, pointer, attributes);
+  if (!deformation.localFromBind.empty() && !attributes.joints.empty())
+    skin(deformation.localFromBind, pointer, attributes);
 }
 
 }  // namespace limn::gltf

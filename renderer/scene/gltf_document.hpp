@@ -32,8 +32,8 @@ class Reporter {
 struct Document {
   Container container;
   LoadLimits limits;
-  nlohmann::json json;      ///< all of the document; materials, lights, cameras and extensions are read from here
-  tinygltf::Model model;    ///< buffers, accessors, meshes, nodes, skins and scenes, after checkStructure
+  nlohmann::json json;    ///< all of the document; materials, lights, cameras and extensions are read from here
+  tinygltf::Model model;  ///< buffers, accessors, meshes, nodes, skins and scenes, after checkStructure
   Reporter reporter;
 
   Value root() const { return Value(json); }

@@ -58,7 +58,9 @@ std::string Value::pointer() const {
   return text;
 }
 
-void Value::fail(std::string code, std::string message) const { gltf::fail(std::move(code), std::move(message), pointer()); }
+void Value::fail(std::string code, std::string message) const {
+  gltf::fail(std::move(code), std::move(message), pointer());
+}
 
 const Value& Value::object() const {
   if (!m_json->is_object()) fail("bad-file", "must be an object");
@@ -112,7 +114,8 @@ uint64_t Value::asUnsigned(uint64_t low, uint64_t high) const {
 uint32_t Value::asIndex(size_t count, const char* what) const {
   const uint64_t v = asUnsigned();
   if (v < count) return uint32_t(v);
-  fail("out-of-range", std::string("there is no ") + what + " " + std::to_string(v) + ", there are " + std::to_string(count));
+  fail("out-of-range",
+       std::string("there is no ") + what + " " + std::to_string(v) + ", there are " + std::to_string(count));
 }
 
 double Value::asNumber(double low, double high) const {

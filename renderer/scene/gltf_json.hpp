@@ -12,7 +12,8 @@
 
 namespace limn::gltf {
 
-/// Thrown inside the loader only; loadGltf turns it into its Result. `pointer` is a JSON pointer ("/accessors/3/count") or empty.
+/// Thrown inside the loader only; loadGltf turns it into its Result. `pointer` is a JSON pointer ("/accessors/3/count")
+/// or empty.
 struct Fault {
   std::string code, message, pointer;
 };
@@ -33,8 +34,8 @@ std::string pointerOf(const Parts&... parts) {
   return text;
 }
 
-/// A JSON value and the way to it, so that every complaint can name its place; the text is made only when something is wrong.
-/// Reading checks type and range. A small value; the document and the key texts given to it must outlive it.
+/// A JSON value and the way to it, so that every complaint can name its place; the text is made only when something is
+/// wrong. Reading checks type and range. A small value; the document and the key texts given to it must outlive it.
 class Value {
  public:
   explicit Value(const nlohmann::json& root) : m_json(&root) {}
@@ -76,8 +77,11 @@ class Value {
   static constexpr double kAnyNumber = std::numeric_limits<double>::max();
 
  private:
-  struct Part { const char* key; size_t index; };  // key null: an element
-  static constexpr size_t kMaxDepth = 12;          // deeper values tell their ancestor's place
+  struct Part {
+    const char* key;
+    size_t index;
+  };                                       // key null: an element
+  static constexpr size_t kMaxDepth = 12;  // deeper values tell their ancestor's place
 
   Value child(const nlohmann::json& json, const char* key, size_t index) const;
 

@@ -6,6 +6,7 @@
 #include "renderer/scene/gltf_document.hpp"
 #include "renderer/scene/gltf_materials.hpp"
 #include "renderer/scene/gltf_nodes.hpp"
+#include "renderer/scene/scene_estimate.hpp"
 #include "renderer/scene/scene_needs.hpp"
 
 namespace limn {
@@ -46,6 +47,16 @@ void countGeometry(const Scene& scene, LoadReport& report) {
   }
 }
 
+/// Every node's triangles end in the hierarchy by themselves, so a few bytes of nodes can stand for any number of them.
+void checkInstances(const Scene& scene, const LoadLimits& limits, LoadReport& report) {
+  report.instancedTriangles = estimateScene(scene).instancedTriangles;
+  if (report.instancedTriangles <= limits.maxTriangles) return;
+  gltf::fail("limit",
+             std::to_string(report.instancedTriangles) + " triangles over all nodes are more than the limit of " +
+                 std::to_string(limits.maxTriangles),
+             "/nodes");
+}
+
 void checkExtent(const Scene& scene) {
   const Bounds bounds = worldBounds(scene);
   for (int c = 0; c < 3; ++c) {
@@ -70,6 +81,7 @@ LoadedScene load(const std::filesystem::path& file, const LoadOptions& options) 
   gltf::readNodes(document, loaded.scene);
   loaded.report = document.reporter.take();
 
+  checkInstances(loaded.scene, options.limits, loaded.report);
   checkExtent(loaded.scene);
   countGeometry(loaded.scene, loaded.report);
   chooseView(loaded.scene, loaded.report);
@@ -85,9 +97,7 @@ Result<LoadedScene> loadGltf(const std::filesystem::path& file, const LoadOption
     return load(file, options);
   } catch (const gltf::Fault& fault) {
     return Error{fault.code, fault.message, fault.pointer.empty() ? name : name + "#" + fault.pointer};
-  } catch (const std::bad_alloc&) {
-    return Error{"limit", "the file needs more memory than there is", name};
-  }
+  } catch (const std::bad_alloc&) { return Error{"limit", "the file needs more memory than there is", name}; }
 }
 
 }  // namespace limn

@@ -11,7 +11,7 @@ namespace limn {
 /// Limits checked before anything large is allocated.
 struct LoadLimits {
   uint64_t maxFileBytes = 2ull << 30;
-  uint64_t maxTriangles = 64'000'000;
+  uint64_t maxTriangles = 64'000'000;  ///< of all meshes, and over all nodes
   uint64_t maxVertices = 192'000'000;
   uint32_t maxNodes = 1'000'000;
   uint32_t maxImageSide = 16'384;       ///< [texel]
@@ -32,8 +32,9 @@ struct LoadReport {
     std::string note;                    ///< one sentence: what happens instead
   };
   std::vector<Item> unsupported;
-  std::vector<std::string> notes;        ///< "no camera: one was added that frames the scene", ...
+  std::vector<std::string> notes;  ///< "no camera: one was added that frames the scene", ...
   uint64_t triangles = 0, degenerateTriangles = 0, vertices = 0, imageBytes = 0;
+  uint64_t instancedTriangles = 0;  ///< over all nodes
 };
 
 struct LoadedScene {
@@ -45,7 +46,9 @@ struct LoadedScene {
 /// Skins and morph targets are applied at time zero. Nothing outside the asset root is opened.
 Result<LoadedScene> loadGltf(const std::filesystem::path& file, const LoadOptions& options = {});
 
-/// Reads an .hdr or .exr latitude-longitude image for the environment. NaN and infinity become 0 and are counted in `notes`.
-Result<Image> loadEnvironmentImage(const std::filesystem::path& file, const LoadLimits& limits, std::vector<std::string>& notes);
+/// Reads an .hdr or .exr latitude-longitude image for the environment. NaN and infinity become 0 and are counted in
+/// `notes`.
+Result<Image> loadEnvironmentImage(const std::filesystem::path& file, const LoadLimits& limits,
+                                   std::vector<std::string>& notes);
 
 }  // namespace limn

@@ -46,14 +46,16 @@ class MaterialReader {
     color(m_json, "emissiveFactor", m_material.emission, kLargest);
     m_material.emissiveTexture = texture(m_json, "emissiveTexture");
     m_material.normalTexture = texture(m_json, "normalTexture");
-    if (const auto normal = m_json.find("normalTexture")) m_material.normalScale = factor(*normal, "scale", 1.0, -kLargest, kLargest);
+    if (const auto normal = m_json.find("normalTexture"))
+      m_material.normalScale = factor(*normal, "scale", 1.0, -kLargest, kLargest);
     m_material.doubleSided = m_json.boolOr("doubleSided", false);
     m_material.alphaCutoff = factor(m_json, "alphaCutoff", 0.5, 0.0, kLargest);
     const std::string mode = m_json.stringOr("alphaMode", "OPAQUE");
     if (mode == "MASK") m_material.alphaMode = AlphaMode::mask;
     else if (mode == "BLEND") m_material.alphaMode = AlphaMode::blend;
     else if (mode != "OPAQUE") m_json.need("alphaMode").fail("bad-file", "there is no alpha mode \"" + mode + "\"");
-    if (m_json.has("occlusionTexture")) m_document.reporter.note("occlusion textures are not used: the light is really transported");
+    if (m_json.has("occlusionTexture"))
+      m_document.reporter.note("occlusion textures are not used: the light is really transported");
   }
 
   void metallicRoughness() {
@@ -82,7 +84,8 @@ class MaterialReader {
     m_material.thickness = factor(e, "thicknessFactor", 0.0, 0.0, kLargest);
     m_material.attenuationDistance = factor(e, "attenuationDistance", 0.0, 0.0, kLargest);
     color(e, "attenuationColor", m_material.attenuationColor);
-    if (e.has("thicknessTexture")) m_document.reporter.note("thickness textures are not used: rays measure the real thickness");
+    if (e.has("thicknessTexture"))
+      m_document.reporter.note("thickness textures are not used: rays measure the real thickness");
   }
   void specular(const Value& e) {
     m_material.specular = factor(e, "specularFactor", 1.0);

@@ -3,7 +3,8 @@
 
 namespace limn::gltf {
 
-/// All materials, in the file's order, with the images that they sample. Factors outside their range are clamped and noted.
+/// All materials, in the file's order, with the images that they sample. Factors outside their range are clamped and
+/// noted.
 void readMaterials(Document& document, Scene& scene);
 
 /// KHR_lights_punctual's lights and the cameras, in the file's order. A colour above 1 moves into the intensity.

@@ -10,7 +10,8 @@ namespace limn::gltf {
 namespace {
 
 constexpr float kFarthest = 1e15f;  ///< [m]; squares and products of three stay inside float's range only below
-constexpr const char* kModeNames[] = {"POINTS", "LINES", "LINE_LOOP", "LINE_STRIP", "TRIANGLES", "TRIANGLE_STRIP", "TRIANGLE_FAN"};
+constexpr const char* kModeNames[] = {"POINTS",    "LINES",          "LINE_LOOP",   "LINE_STRIP",
+                                      "TRIANGLES", "TRIANGLE_STRIP", "TRIANGLE_FAN"};
 
 std::string materialLabel(const Scene& scene, int material) {
   if (material < 0) return "";
@@ -40,7 +41,8 @@ void spend(Document& document, const tinygltf::Primitive& source, const std::str
   }
 }
 
-std::vector<uint32_t> readIndices(const Document& document, const tinygltf::Primitive& source, uint64_t vertices) {
+std::vector<uint32_t> readIndices(const Document& document, const tinygltf::Primitive& source, uint64_t vertices,
+                                  const std::string& pointer) {
   if (source.indices < 0) {
     std::vector<uint32_t> all(vertices);
     std::iota(all.begin(), all.end(), 0u);
@@ -49,8 +51,8 @@ std::vector<uint32_t> readIndices(const Document& document, const tinygltf::Prim
   std::vector<uint32_t> indices = readUnsigned(document, source.indices, 1);
   for (size_t i = 0; i < indices.size(); ++i) {
     if (indices[i] < vertices) continue;
-    fail("out-of-range", "index " + std::to_string(i) + " is " + std::to_string(indices[i]) + ", there are " + std::to_string(vertices) +
-                             " vertices", pointerOf("accessors", source.indices));
+    const std::string what = "index " + std::to_string(i) + " is " + std::to_string(indices[i]);
+    fail("out-of-range", what + ", there are " + std::to_string(vertices) + " vertices", pointer + "/indices");
   }
   return indices;
 }
@@ -125,7 +127,9 @@ Attributes readAttributes(Document& document, const Scene& scene, const tinygltf
     else if (name == "TEXCOORD_0") out.vertices.uv0 = readUvs(document, accessor);
     else if (name == "TEXCOORD_1") out.vertices.uv1 = readUvs(document, accessor);
     else if (name == "COLOR_0") out.vertices.colors = readColors(document, accessor);
-    else if (name.starts_with("COLOR_")) document.reporter.unsupported(name, "only the first vertex colour is used", materialLabel(scene, source.material));
+    else if (name.starts_with("COLOR_"))
+      document.reporter.unsupported(name, "only the first vertex colour is used",
+                                    materialLabel(scene, source.material));
   }
   for (int set = 0;; ++set) {
     const auto joints = source.attributes.find("JOINTS_" + std::to_string(set));
@@ -176,8 +180,8 @@ void finishTangents(Document& document, const Scene& scene, Primitive& primitive
   document.reporter.count("primitives with a normal map but without tangents got generated ones", 1);
 }
 
-Primitive readPrimitive(Document& document, const Scene& scene, const tinygltf::Primitive& source, const Deformation& deformation,
-                        const std::string& pointer) {
+Primitive readPrimitive(Document& document, const Scene& scene, const tinygltf::Primitive& source,
+                        const Deformation& deformation, const std::string& pointer) {
   spend(document, source, pointer);
   Attributes attributes = readAttributes(document, scene, source);
   deform(document, source, deformation, pointer, attributes);
@@ -187,7 +191,7 @@ Primitive readPrimitive(Document& document, const Scene& scene, const tinygltf::
   }
   Primitive primitive = std::move(attributes.vertices);
   primitive.material = source.material;
-  primitive.indices = asTriangles(source.mode, readIndices(document, source, primitive.positions.size()));
+  primitive.indices = asTriangles(source.mode, readIndices(document, source, primitive.positions.size(), pointer));
 
   LoadReport& report = document.reporter.report();
   const uint64_t dropped = dropDegenerateTriangles(primitive);
@@ -207,11 +211,13 @@ Mesh readMesh(Document& document, const Scene& scene, uint32_t index, const Defo
     const tinygltf::Primitive& primitive = source.primitives[i];
     const std::string label = materialLabel(scene, primitive.material);
     if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
-      document.reporter.unsupported(std::string("primitive mode ") + kModeNames[primitive.mode], "points and lines are left out", label);
+      document.reporter.unsupported(std::string("primitive mode ") + kModeNames[primitive.mode],
+                                    "points and lines are left out", label);
     } else if (!primitive.attributes.contains("POSITION")) {
       document.reporter.count("primitives without positions were left out", 1);
     } else {
-      Primitive read = readPrimitive(document, scene, primitive, deformation, pointerOf("meshes", index, "primitives", i));
+      Primitive read =
+          readPrimitive(document, scene, primitive, deformation, pointerOf("meshes", index, "primitives", i));
       if (!read.indices.empty()) mesh.primitives.push_back(std::move(read));
     }
   }

@@ -7,8 +7,9 @@ namespace {
 
 using nlohmann::json;
 
-/// What tinygltf is given: only the lists that describe geometry, without extensions and extras (which we read ourselves, because
-/// tinygltf cuts large integers and drops empty values), and with every buffer's URI replaced by its number.
+/// What tinygltf is given: only the lists that describe geometry, without extensions and extras (which we read
+/// ourselves, because tinygltf cuts large integers and drops empty values), and with every buffer's URI replaced by its
+/// number.
 json geometryPart(const json& full) {
   json part = {{"asset", {{"version", "2.0"}}}};
   for (const char* list : {"buffers", "bufferViews", "accessors", "meshes", "nodes", "skins", "scenes"}) {
@@ -44,8 +45,9 @@ std::vector<uint8_t> bufferBytes(Document& document, size_t index) {
     buffer.fail("bad-file", "the buffer has neither a URI nor a binary chunk");
   }
   if (bytes.size() < length) {
-    buffer.need("byteLength").fail("out-of-range", "the buffer says " + std::to_string(length) + " bytes and has " +
-                                                       std::to_string(bytes.size()));
+    buffer.need("byteLength")
+        .fail("out-of-range",
+              "the buffer says " + std::to_string(length) + " bytes and has " + std::to_string(bytes.size()));
   }
   bytes.resize(length);
   return bytes;
@@ -81,8 +83,8 @@ void parseModel(Document& document) {
   if (text.size() > std::numeric_limits<unsigned int>::max()) fail("limit", "the JSON is too large", "");
 
   std::string error, warning;
-  const bool good = reader.LoadASCIIFromString(&document.model, &error, &warning, text.data(), unsigned(text.size()), "",
-                                               tinygltf::NO_REQUIRE);
+  const bool good = reader.LoadASCIIFromString(&document.model, &error, &warning, text.data(), unsigned(text.size()),
+                                               "", tinygltf::NO_REQUIRE);
   if (files.fault) throw *files.fault;
   if (!good) fail("bad-file", "tinygltf refuses the file: " + error.substr(0, error.find('\n')), "");
   const Value root = document.root();
@@ -92,7 +94,8 @@ void parseModel(Document& document) {
   if (!complete) fail("bad-file", "tinygltf could not read every mesh, node and accessor", "");
   for (size_t i = 0; i < document.model.meshes.size(); ++i) {
     const Value primitives = root.list("meshes")[i].list("primitives");
-    if (document.model.meshes[i].primitives.size() != primitives.size()) primitives.fail("bad-file", "tinygltf could not read a primitive");
+    if (document.model.meshes[i].primitives.size() != primitives.size())
+      primitives.fail("bad-file", "tinygltf could not read a primitive");
   }
 }
 

@@ -67,7 +67,8 @@ bool flattens(const glm::dmat4& m) {
 
 class NodeReader {
  public:
-  NodeReader(Document& document, Scene& scene) : m_document(document), m_scene(scene), m_nodes(document.root().list("nodes")) {}
+  NodeReader(Document& document, Scene& scene)
+      : m_document(document), m_scene(scene), m_nodes(document.root().list("nodes")) {}
 
   void read() {
     readAllTransforms();
@@ -99,7 +100,8 @@ class NodeReader {
       const glm::dmat4& w = m_world[i];
       for (int c = 0; c < 4; ++c) {
         const double length = glm::length(glm::dvec3(w[c]));
-        if (!(length <= kFarthest)) m_nodes[i].fail("out-of-range", "the node's place or size in the world is beyond 1e15");
+        if (!(length <= kFarthest))
+          m_nodes[i].fail("out-of-range", "the node's place or size in the world is beyond 1e15");
       }
       for (const int child : m_document.model.nodes[i].children) open.push_back(uint32_t(child));
     }
@@ -147,7 +149,8 @@ class NodeReader {
 
   void addInstances(uint32_t parent, int32_t mesh, const std::vector<Transform>& instances, const Value& place) {
     if (m_scene.nodes.size() + instances.size() > m_document.limits.maxNodes) {
-      place.fail("limit", "with its instances the scene has more than " + std::to_string(m_document.limits.maxNodes) + " nodes");
+      place.fail("limit",
+                 "with its instances the scene has more than " + std::to_string(m_document.limits.maxNodes) + " nodes");
     }
     const glm::dmat4 world = m_scene.nodes[parent].parentFromLocal.toMatrix();
     for (size_t k = 0; k < instances.size(); ++k) {
@@ -162,12 +165,14 @@ class NodeReader {
     }
   }
 
-  /// The node's mesh in the scene, read when it is new: by index and morph weights, or for this node alone when it has a skin.
+  /// The node's mesh in the scene, read when it is new: by index and morph weights, or for this node alone when it has
+  /// a skin.
   int32_t meshFor(uint32_t i, const tinygltf::Node& source) {
     const uint32_t index = uint32_t(source.mesh);
     Deformation deformation;
     deformation.morphWeights = source.weights.empty() ? m_document.model.meshes[index].weights : source.weights;
-    const bool still = std::all_of(deformation.morphWeights.begin(), deformation.morphWeights.end(), [](double w) { return w == 0.0; });
+    const bool still = std::all_of(deformation.morphWeights.begin(), deformation.morphWeights.end(),
+                                   [](double w) { return w == 0.0; });
     if (still) deformation.morphWeights.clear();
     if (source.skin >= 0) {
       deformation.localFromBind = jointMatrices(i, uint32_t(source.skin));
@@ -203,12 +208,13 @@ class NodeReader {
   Document& m_document;
   Scene& m_scene;
   const Value m_nodes;
-  std::vector<Transform> m_local;                     // by node of the file
-  std::vector<glm::dmat4> m_world;                    // by node of the file
-  std::vector<int32_t> m_parent;                      // by node of the file
-  std::vector<uint32_t> m_roots;                      // nodes of the file
-  std::map<uint32_t, uint32_t> m_newIndex;            // node of the file -> node of the scene
-  std::map<std::pair<uint32_t, std::vector<double>>, int32_t> m_meshes;  // not skinned: (mesh, weights) -> mesh of the scene
+  std::vector<Transform> m_local;           // by node of the file
+  std::vector<glm::dmat4> m_world;          // by node of the file
+  std::vector<int32_t> m_parent;            // by node of the file
+  std::vector<uint32_t> m_roots;            // nodes of the file
+  std::map<uint32_t, uint32_t> m_newIndex;  // node of the file -> node of the scene
+  std::map<std::pair<uint32_t, std::vector<double>>, int32_t>
+      m_meshes;  // not skinned: (mesh, weights) -> mesh of the scene
 };
 
 }  // namespace

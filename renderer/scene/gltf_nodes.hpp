@@ -3,8 +3,8 @@
 
 namespace limn::gltf {
 
-/// The nodes of the default scene with their lights and cameras, and the meshes that they carry: bent ones once a node, others shared.
-/// EXT_mesh_gpu_instancing becomes child nodes. Throws Fault.
+/// The nodes of the default scene with their lights and cameras, and the meshes that they carry: bent ones once a node,
+/// others shared. EXT_mesh_gpu_instancing becomes child nodes. Throws Fault.
 void readNodes(Document& document, Scene& scene);
 
 /// TRS when it expresses the matrix to 1e-5, otherwise the matrix beside the nearest TRS.

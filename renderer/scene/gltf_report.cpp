@@ -8,15 +8,16 @@ namespace limn::gltf {
 namespace {
 
 constexpr std::string_view kSupported[] = {
-    "KHR_texture_transform",     "KHR_materials_emissive_strength", "KHR_materials_ior",       "KHR_materials_transmission",
-    "KHR_materials_volume",      "KHR_materials_specular",          "KHR_materials_clearcoat", "KHR_materials_unlit",
-    "KHR_lights_punctual",       "KHR_mesh_quantization",           "EXT_mesh_gpu_instancing",
+    "KHR_texture_transform", "KHR_materials_emissive_strength", "KHR_materials_ior",       "KHR_materials_transmission",
+    "KHR_materials_volume",  "KHR_materials_specular",          "KHR_materials_clearcoat", "KHR_materials_unlit",
+    "KHR_lights_punctual",   "KHR_mesh_quantization",           "EXT_mesh_gpu_instancing",
 };
 
 const char* noteOf(const std::string& extension) {
   if (extension == "KHR_materials_variants") return "the default materials are shown";
   if (extension == "KHR_materials_pbrSpecularGlossiness") return "the metallic-roughness factors are used instead";
-  if (extension == "KHR_texture_basisu" || extension == "EXT_texture_webp") return "the PNG or JPEG beside it is used, if there is one";
+  if (extension == "KHR_texture_basisu" || extension == "EXT_texture_webp")
+    return "the PNG or JPEG beside it is used, if there is one";
   if (extension == "KHR_animation_pointer") return "animations are not played";
   if (extension.starts_with("KHR_materials_")) return "the material is shown without it";
   return "it is ignored";
@@ -51,7 +52,9 @@ void addTextureExtensions(const nlohmann::json& value, const Value& textures, st
 
 }  // namespace
 
-bool supportsExtension(std::string_view name) { return std::find(std::begin(kSupported), std::end(kSupported), name) != std::end(kSupported); }
+bool supportsExtension(std::string_view name) {
+  return std::find(std::begin(kSupported), std::end(kSupported), name) != std::end(kSupported);
+}
 
 void reportUnsupported(Document& document) {
   const Value root = document.root();
@@ -78,7 +81,8 @@ void reportUnsupported(Document& document) {
   for (const std::string& name : elsewhere) {
     if (!supportsExtension(name) && !met.contains(name)) document.reporter.unsupported(name, noteOf(name));
   }
-  if (root.list("animations").size() > 0) document.reporter.unsupported("animations", "the scene is shown at rest, as its nodes are stored");
+  if (root.list("animations").size() > 0)
+    document.reporter.unsupported("animations", "the scene is shown at rest, as its nodes are stored");
 }
 
 void Reporter::unsupported(const std::string& feature, const std::string& note, const std::string& material) {
@@ -90,7 +94,8 @@ void Reporter::unsupported(const std::string& feature, const std::string& note, 
 }
 
 void Reporter::note(const std::string& text) {
-  if (std::find(m_report.notes.begin(), m_report.notes.end(), text) == m_report.notes.end()) m_report.notes.push_back(text);
+  if (std::find(m_report.notes.begin(), m_report.notes.end(), text) == m_report.notes.end())
+    m_report.notes.push_back(text);
 }
 
 void Reporter::count(const std::string& text, uint64_t howMany) {

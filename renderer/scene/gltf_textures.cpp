@@ -43,11 +43,13 @@ TextureRef Textures::read(const Value& owner, const char* key, const std::string
   ref.texCoord = uint32_t(info->unsignedOr("texCoord", 0, 0, 1u << 16));
   if (const auto transform = info->extension("KHR_texture_transform")) readTransform(ref, *transform);
   if (ref.texCoord > 1) {
-    m_document.reporter.unsupported("TEXCOORD_" + std::to_string(ref.texCoord), "textures that use it are left out", material);
+    m_document.reporter.unsupported("TEXCOORD_" + std::to_string(ref.texCoord), "textures that use it are left out",
+                                    material);
     return {};
   }
   const Value samplers = m_document.root().list("samplers");
-  if (const int32_t sampler = texture.indexOr("sampler", samplers.size(), "sampler"); sampler >= 0) readSampler(ref, samplers[size_t(sampler)]);
+  if (const int32_t sampler = texture.indexOr("sampler", samplers.size(), "sampler"); sampler >= 0)
+    readSampler(ref, samplers[size_t(sampler)]);
 
   const int32_t source = texture.indexOr("source", m_sceneImages.size(), "image");
   if (source < 0) {
@@ -63,7 +65,8 @@ std::vector<uint8_t> Textures::fileBytes(const Value& image) {
   const auto uri = image.find("uri");
   if (!view == !uri) image.fail("bad-file", "an image has either a URI or a bufferView");
   if (uri) return readUri(m_document.container, uri->asString(), m_document.limits.maxFileBytes, uri->pointer());
-  const tinygltf::BufferView& range = m_document.model.bufferViews[view->asIndex(m_document.model.bufferViews.size(), "bufferView")];
+  const tinygltf::BufferView& range =
+      m_document.model.bufferViews[view->asIndex(m_document.model.bufferViews.size(), "bufferView")];
   const auto begin = m_document.model.buffers[size_t(range.buffer)].data.begin() + std::ptrdiff_t(range.byteOffset);
   return {begin, begin + std::ptrdiff_t(range.byteLength)};
 }
@@ -79,12 +82,14 @@ int32_t Textures::image(uint32_t index) {
   const LoadLimits& limits = m_document.limits;
   const std::string size = std::to_string(header->width) + "x" + std::to_string(header->height);
   if (header->width > limits.maxImageSide || header->height > limits.maxImageSide) {
-    description.fail("limit", "an image of " + size + " is over the limit of " + std::to_string(limits.maxImageSide) + " texels a side");
+    description.fail("limit", "an image of " + size + " is over the limit of " + std::to_string(limits.maxImageSide) +
+                                  " texels a side");
   }
   uint64_t& used = m_document.reporter.report().imageBytes;
   used += uint64_t(header->width) * header->height * 4;
   if (used > limits.maxImageBytes) {
-    description.fail("limit", "with an image of " + size + " the images pass the limit of " + std::to_string(limits.maxImageBytes) + " bytes");
+    description.fail("limit", "with an image of " + size + " the images pass the limit of " +
+                                  std::to_string(limits.maxImageBytes) + " bytes");
   }
 
   Result<Image> decoded = decodeImage(bytes, *header);

@@ -38,10 +38,13 @@ InstanceData readInstances(const Document& document, const Value& attributes) {
     const int32_t index = attributes.indexOr(name, document.model.accessors.size(), "accessor");
     if (index < 0) return {};
     const Value accessor = document.root().list("accessors")[size_t(index)];
-    if (accessor.need("type").asString() != type) attributes.need(name).fail("bad-file", std::string(name) + " must be of type " + type);
+    if (accessor.need("type").asString() != type)
+      attributes.need(name).fail("bad-file", std::string(name) + " must be of type " + type);
     const uint64_t count = countOf(document, index);
-    if (data.count != 0 && data.count != count) attributes.need(name).fail("bad-file", "instance attributes differ in their counts");
-    if (count > document.limits.maxNodes) attributes.need(name).fail("limit", "there are more instances than nodes are allowed");
+    if (data.count != 0 && data.count != count)
+      attributes.need(name).fail("bad-file", "instance attributes differ in their counts");
+    if (count > document.limits.maxNodes)
+      attributes.need(name).fail("limit", "there are more instances than nodes are allowed");
     data.count = count;
     std::vector<float> values = readFloats(document, index, components);
     const bool finite = std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
@@ -61,7 +64,8 @@ Transform transformFromMatrix(const glm::dmat4& matrix) {
   glm::dmat3 axes = orthonormal(m);
   Transform t;
   t.translation = glm::dvec3(matrix[3]);
-  t.scale = {glm::dot(axes[0], m[0]), glm::dot(axes[1], m[1]), glm::dot(axes[2], m[2])};  // the last is negative when mirrored
+  t.scale = {glm::dot(axes[0], m[0]), glm::dot(axes[1], m[1]),
+             glm::dot(axes[2], m[2])};  // the last is negative when mirrored
   t.rotation = glm::normalize(glm::quat_cast(axes));
   const glm::dmat3 difference = glm::dmat3(t.toMatrix()) - m;
   if (largest(difference) > 1e-5 * largest(m)) t.matrix = matrix;
@@ -75,7 +79,8 @@ std::vector<Transform> instancesOf(const Document& document, const Value& node) 
   std::vector<Transform> instances(data.count);
   for (size_t i = 0; i < data.count; ++i) {
     Transform& t = instances[i];
-    if (!data.translation.empty()) t.translation = {data.translation[3 * i], data.translation[3 * i + 1], data.translation[3 * i + 2]};
+    if (!data.translation.empty())
+      t.translation = {data.translation[3 * i], data.translation[3 * i + 1], data.translation[3 * i + 2]};
     if (!data.scale.empty()) t.scale = {data.scale[3 * i], data.scale[3 * i + 1], data.scale[3 * i + 2]};
     if (data.rotation.empty()) continue;
     const float* q = &data.rotation[4 * i];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <string_view>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -23,7 +24,8 @@ Result<ImageHeader> checked(ImageHeader header) {
 }
 
 Result<ImageHeader> pngHeader(std::span<const uint8_t> b) {
-  if (b.size() < 33 || std::memcmp(b.data() + 12, "IHDR", 4) != 0) return Error{"bad-file", "the PNG has no header", ""};
+  if (b.size() < 33 || std::memcmp(b.data() + 12, "IHDR", 4) != 0)
+    return Error{"bad-file", "the PNG has no header", ""};
   return checked({ImageHeader::Format::png, bigEndian(b.data() + 16, 4), bigEndian(b.data() + 20, 4), b[24] == 16});
 }
 
@@ -39,12 +41,26 @@ Result<ImageHeader> jpegHeader(std::span<const uint8_t> b) {
     const size_t length = bigEndian(b.data() + at + 2, 2);
     const bool frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
     if (frame && at + 9 <= b.size()) {
-      return checked({ImageHeader::Format::jpeg, bigEndian(b.data() + at + 7, 2), bigEndian(b.data() + at + 5, 2), false});
+      return checked(
+          {ImageHeader::Format::jpeg, bigEndian(b.data() + at + 7, 2), bigEndian(b.data() + at + 5, 2), false});
     }
     if (length < 2) break;
     at += 2 + length;
   }
   return Error{"bad-file", "the JPEG has no frame header", ""};
+}
+
+/// Formats that files name although glTF's core knows PNG and JPEG only.
+const char* foreignFormat(std::span<const uint8_t> b) {
+  const auto startsWith = [&](std::string_view magic) {
+    return b.size() >= magic.size() && std::memcmp(b.data(), magic.data(), magic.size()) == 0;
+  };
+  if (startsWith("RIFF")) return "WebP";
+  if (startsWith("\xabKTX")) return "KTX";
+  if (startsWith("GIF8")) return "GIF";
+  if (startsWith("DDS ")) return "DDS";
+  if (startsWith("BM")) return "BMP";
+  return nullptr;
 }
 
 /// One, two or three channels become four: grey is spread, missing alpha is 255.
@@ -54,7 +70,9 @@ void spreadChannels(std::vector<uint8_t>& rgba, size_t texels, int channels) {
     std::copy_n(rgba.data() + i * size_t(channels), channels, in);
     const bool grey = channels < 3;
     const uint8_t out[4] = {in[0], grey ? in[0] : in[1], grey ? in[0] : in[2],
-                            channels == 2 ? in[1] : channels == 4 ? in[3] : uint8_t(255)};
+                            channels == 2   ? in[1]
+                            : channels == 4 ? in[3]
+                                            : uint8_t(255)};
     std::copy_n(out, 4, rgba.data() + i * 4);
   }
 }
@@ -65,7 +83,9 @@ Result<ImageHeader> readImageHeader(std::span<const uint8_t> bytes) {
   constexpr uint8_t kPng[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   if (bytes.size() >= 8 && std::memcmp(bytes.data(), kPng, 8) == 0) return pngHeader(bytes);
   if (bytes.size() >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff) return jpegHeader(bytes);
-  return Error{"unsupported", "the image is neither PNG nor JPEG", ""};
+  if (const char* name = foreignFormat(bytes))
+    return Error{"unsupported", std::string("the image is ") + name + ", not PNG or JPEG", ""};
+  return Error{"bad-file", "the image is neither PNG nor JPEG", ""};
 }
 
 Result<Image> decodeImage(std::span<const uint8_t> bytes, const ImageHeader& header) {
@@ -76,7 +96,8 @@ Result<Image> decodeImage(std::span<const uint8_t> bytes, const ImageHeader& hea
   OIIO::ImageInput& input = **opened;
 
   const OIIO::ImageSpec spec = input.spec();
-  if (spec.width != int(header.width) || spec.height != int(header.height) || spec.nchannels < 1 || spec.nchannels > 4) {
+  if (spec.width != int(header.width) || spec.height != int(header.height) || spec.nchannels < 1 ||
+      spec.nchannels > 4) {
     return Error{"bad-file", "the image's parts contradict each other", ""};
   }
   Image image;

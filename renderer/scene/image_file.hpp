@@ -19,8 +19,8 @@ struct ImageHeader {
 /// Looks at magic and header only; nothing is decoded. Errors: unsupported (neither PNG nor JPEG), bad-file.
 Result<ImageHeader> readImageHeader(std::span<const uint8_t> bytes);
 
-/// Decodes to 8-bit RGBA, alpha not multiplied in. `bytes` is a file that readImageHeader has accepted and whose size the caller
-/// has checked. Any thread. Errors: bad-file.
+/// Decodes to 8-bit RGBA, alpha not multiplied in. `bytes` is a file that readImageHeader has accepted and whose size
+/// the caller has checked. Any thread. Errors: bad-file.
 Result<Image> decodeImage(std::span<const uint8_t> bytes, const ImageHeader& header);
 
 }  // namespace limn

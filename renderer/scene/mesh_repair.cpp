@@ -7,7 +7,8 @@ namespace limn {
 namespace {
 
 glm::dvec3 crossOf(const Primitive& p, size_t triangle) {
-  const glm::dvec3 a(p.positions[p.indices[triangle]]), b(p.positions[p.indices[triangle + 1]]), c(p.positions[p.indices[triangle + 2]]);
+  const glm::dvec3 a(p.positions[p.indices[triangle]]), b(p.positions[p.indices[triangle + 1]]),
+      c(p.positions[p.indices[triangle + 2]]);
   return glm::cross(b - a, c - a);
 }
 

@@ -19,14 +19,16 @@ struct NormalRepair {
 /// Makes every normal a unit vector.
 NormalRepair repairNormals(Primitive& primitive);
 
-/// Zero or broken tangents become any vector perpendicular to the normal, all become unit, w becomes -1 or 1; gives the number replaced.
+/// Zero or broken tangents become any vector perpendicular to the normal, all become unit, w becomes -1 or 1; gives the
+/// number replaced.
 uint64_t repairTangents(Primitive& primitive);
 
-/// Tangents for a normal map on texture coordinates `uv` (one a vertex), after the rules of MikkTSpace: each triangle has the direction
-/// in which u grows; a vertex gets the mean of its triangles' directions, projected on the plane of its normal and weighted by the
-/// corner's angle; vertices of equal position, normal and uv count as one; where mirrored and unmirrored triangles meet, the vertex is
-/// split. w is 1 where v grows downwards as seen from outside (glTF: bitangent = cross(normal, tangent) * w points to smaller v).
-/// Triangles without texture area give no direction.
+/// Tangents for a normal map on texture coordinates `uv` (one a vertex), after the rules of MikkTSpace: each triangle
+/// has the direction in which u grows; a vertex gets the mean of its triangles' directions, projected on the plane of
+/// its normal and weighted by the corner's angle; vertices of equal position, normal and uv count as one; where
+/// mirrored and unmirrored triangles meet, the vertex is split. w is 1 where v grows downwards as seen from outside
+/// (glTF: bitangent = cross(normal, tangent) * w points to smaller v). Triangles without texture area give no
+/// direction.
 void generateTangents(Primitive& primitive, std::vector<glm::vec2> uv);
 
 /// Vertices `source[i]` in order i, all attributes; indices are not touched.

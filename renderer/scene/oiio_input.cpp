@@ -18,7 +18,8 @@ Result<std::unique_ptr<OIIO::ImageInput>> openOiio(const char* reader, OIIO::Fil
   });
   std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(reader);
   if (!input) return Error{"unsupported", std::string("there is no image reader \"") + reader + "\"", ""};
-  if (!input->set_ioproxy(&memory)) return Error{"unsupported", std::string(reader) + " cannot be read from memory", ""};
+  if (!input->set_ioproxy(&memory))
+    return Error{"unsupported", std::string(reader) + " cannot be read from memory", ""};
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);
   OIIO::ImageSpec spec;

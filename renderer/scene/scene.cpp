@@ -11,7 +11,8 @@
 namespace limn {
 namespace {
 
-/// Above this many vertex transforms a mesh is bounded by the corners of its own box, which is looser but never too small.
+/// Above this many vertex transforms a mesh is bounded by the corners of its own box, which is looser but never too
+/// small.
 constexpr uint64_t kMaxExactBoundsWork = 20'000'000;
 
 struct LocalBox {
@@ -88,7 +89,8 @@ std::vector<glm::dmat4> Scene::worldFromNodes() const {
 
 std::optional<View> Scene::viewOfCamera(uint32_t index) const {
   if (index >= cameras.size()) return std::nullopt;
-  const auto carrier = std::find_if(nodes.begin(), nodes.end(), [&](const Node& n) { return n.camera == int32_t(index); });
+  const auto carrier =
+      std::find_if(nodes.begin(), nodes.end(), [&](const Node& n) { return n.camera == int32_t(index); });
   if (carrier == nodes.end()) return std::nullopt;
 
   const glm::dmat4 world = worldFromNodes()[size_t(carrier - nodes.begin())];

@@ -9,14 +9,16 @@ namespace {
 /// A 64-bit hash of a stream of words: multiply and rotate per 8 bytes, finalised by xor-shifts. Not for security.
 class Hasher {
  public:
-  void word(uint64_t w) {
-    m_state = std::rotl(m_state ^ (w * 0x9e3779b97f4a7c15ull), 29) * 0xbf58476d1ce4e5b9ull;
-  }
+  void word(uint64_t w) { m_state = std::rotl(m_state ^ (w * 0x9e3779b97f4a7c15ull), 29) * 0xbf58476d1ce4e5b9ull; }
   /// Zero and minus zero are the same value and hash the same.
   void number(float v) { word(std::bit_cast<uint32_t>(v + 0.0f)); }
   void number(double v) { word(std::bit_cast<uint64_t>(v + 0.0)); }
-  void numbers(const float* v, size_t count) { for (size_t i = 0; i < count; ++i) number(v[i]); }
-  void numbers(const double* v, size_t count) { for (size_t i = 0; i < count; ++i) number(v[i]); }
+  void numbers(const float* v, size_t count) {
+    for (size_t i = 0; i < count; ++i) number(v[i]);
+  }
+  void numbers(const double* v, size_t count) {
+    for (size_t i = 0; i < count; ++i) number(v[i]);
+  }
 
   /// The elements' bytes; for data that no edit rewrites.
   template <class T>

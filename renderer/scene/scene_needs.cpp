@@ -5,7 +5,8 @@
 namespace limn {
 namespace {
 
-/// Up to this perceptual roughness a lobe is a perfect mirror: GGX alpha = roughness² <= 1e-4, kMinAlpha of the shaders.
+/// Up to this perceptual roughness a lobe is a perfect mirror: GGX alpha = roughness² <= 1e-4, kMinAlpha of the
+/// shaders.
 constexpr float kMirrorRoughness = 0.01f;
 
 bool shines(const glm::vec3& v) { return std::max({v.x, v.y, v.z}) > 0.0f; }
@@ -26,7 +27,8 @@ bool reflectsSpecularly(const Material& m) {
 
 bool mayBeMirror(const Material& m) {
   const bool smooth = m.roughness <= kMirrorRoughness || m.metallicRoughnessTexture.present();
-  const bool smoothCoat = m.clearcoat > 0.0f && (m.clearcoatRoughness <= kMirrorRoughness || m.clearcoatRoughnessTexture.present());
+  const bool smoothCoat =
+      m.clearcoat > 0.0f && (m.clearcoatRoughness <= kMirrorRoughness || m.clearcoatRoughnessTexture.present());
   return (reflectsSpecularly(m) && smooth) || smoothCoat;
 }
 
@@ -71,12 +73,18 @@ SceneNeeds sceneNeeds(const Scene& scene) {
 
 std::vector<std::string> describe(const SceneNeeds& needs) {
   const std::pair<bool, const char*> flags[] = {
-      {needs.punctualLights, "punctualLights"}, {needs.emissiveTriangles, "emissiveTriangles"},
-      {needs.environment, "environment"},       {needs.environmentImage, "environmentImage"},
-      {needs.textures, "textures"},             {needs.normalMaps, "normalMaps"},
-      {needs.alpha, "alpha"},                   {needs.transmission, "transmission"},
-      {needs.clearcoat, "clearcoat"},           {needs.glossy, "glossy"},
-      {needs.mirror, "mirror"},                 {needs.vertexColors, "vertexColors"},
+      {needs.punctualLights, "punctualLights"},
+      {needs.emissiveTriangles, "emissiveTriangles"},
+      {needs.environment, "environment"},
+      {needs.environmentImage, "environmentImage"},
+      {needs.textures, "textures"},
+      {needs.normalMaps, "normalMaps"},
+      {needs.alpha, "alpha"},
+      {needs.transmission, "transmission"},
+      {needs.clearcoat, "clearcoat"},
+      {needs.glossy, "glossy"},
+      {needs.mirror, "mirror"},
+      {needs.vertexColors, "vertexColors"},
   };
   std::vector<std::string> names;
   for (const auto& [set, name] : flags) {

@@ -6,19 +6,20 @@
 
 namespace limn {
 
-/// What a scene contains that costs work; computed once a ChangeSet. Selects passes, caches and specialization constants.
+/// What a scene contains that costs work; computed once a ChangeSet. Selects passes, caches and specialization
+/// constants.
 struct SceneNeeds {
   bool punctualLights = false;
   bool emissiveTriangles = false;
-  bool environment = false;       ///< any non-zero radiance from outside
+  bool environment = false;  ///< any non-zero radiance from outside
   bool environmentImage = false;
-  bool textures = false;          ///< any material that a node uses samples an image
+  bool textures = false;  ///< any material that a node uses samples an image
   bool normalMaps = false;
-  bool alpha = false;             ///< MASK or BLEND materials in use
+  bool alpha = false;  ///< MASK or BLEND materials in use
   bool transmission = false;
   bool clearcoat = false;
-  bool glossy = false;            ///< any specular reflection that is not rough diffuse
-  bool mirror = false;            ///< roughness below the delta limit, or smooth transmission
+  bool glossy = false;  ///< any specular reflection that is not rough diffuse
+  bool mirror = false;  ///< roughness below the delta limit, or smooth transmission
   bool vertexColors = false;
   bool operator==(const SceneNeeds&) const = default;
 };

@@ -36,7 +36,8 @@ TriangleFrame frameOf(const Primitive& p, const std::vector<glm::vec2>& uv, size
 
 double cornerAngle(const Primitive& p, size_t t, size_t c) {
   const glm::dvec3 at(p.positions[p.indices[t + c]]);
-  const glm::dvec3 a = glm::dvec3(p.positions[p.indices[t + (c + 1) % 3]]) - at, b = glm::dvec3(p.positions[p.indices[t + (c + 2) % 3]]) - at;
+  const glm::dvec3 a = glm::dvec3(p.positions[p.indices[t + (c + 1) % 3]]) - at,
+                   b = glm::dvec3(p.positions[p.indices[t + (c + 2) % 3]]) - at;
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
@@ -92,7 +93,8 @@ void generateTangents(Primitive& primitive, std::vector<glm::vec2> uv) {
   for (size_t t = 0; t < primitive.indices.size(); t += 3) {
     for (size_t c = 0; c < 3; ++c) {
       const uint32_t vertex = primitive.indices[t + c];
-      const glm::dvec3 n(primitive.normals[vertex]), along = frames[t / 3].alongU - n * glm::dot(n, frames[t / 3].alongU);
+      const glm::dvec3 n(primitive.normals[vertex]),
+          along = frames[t / 3].alongU - n * glm::dot(n, frames[t / 3].alongU);
       const double length = glm::length(along);
       if (length > 1e-12) sums[groupOf[vertex]] += along * (cornerAngle(primitive, t, c) / length);
     }
