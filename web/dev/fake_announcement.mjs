@@ -37,6 +37,7 @@ export const announcement = (seq) => ({
       parameters: [
         parameter('maxBounces', 'Longest path.', 'bounces', 'integer', 1, 64, 8),
         parameter('clampIndirect', 'Largest indirect sample, 0 for none.', 'W·sr⁻¹·m⁻²', 'real', 0, 100, 0),
+        parameter('maxSamples', 'Samples at which every pixel stops.', 'samples', 'integer', 1, 1048576, 1024),
         parameter('russianRoulette', 'Ends dim paths early.', '1', 'boolean', 0, 1, 1),
       ],
     },

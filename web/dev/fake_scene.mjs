@@ -7,7 +7,7 @@ const material = (name, baseColor, more = {}) => ({
 });
 const node = (name, more = {}) => ({ name, translation: [0, 0, 0], rotation: [0, 0, 0, 1], scale: [1, 1, 1], ...more });
 
-export function makeScene() {
+export function makeScene(width = 320, height = 240) {
   return {
     name: 'fake.glb', hash: '0123456789abcdef', sceneRevision: 1, viewRevision: 1,
     materials: [
@@ -31,8 +31,8 @@ export function makeScene() {
     environment: { radiance: [0.25, 0.3, 0.4], rotation: 0, hasImage: false },
     view: { eye: [0, 1.6, 5.2], target: [0, 0.6, 0], up: [0, 1, 0], perspective: true, yfov: 0.7, ymag: 1, znear: 0.01 },
     resolve: { exposure: 0, toneMap: 'pbr-neutral' },
-    technique: 'path-tracing', parameters: { maxBounces: 8, clampIndirect: 0 },
-    width: 320, height: 240, boundsLow: [-3, 0, -3], boundsHigh: [3, 3, 3],
+    technique: 'path-tracing', parameters: { maxBounces: 8, clampIndirect: 0, maxSamples: 64, russianRoulette: 1 },
+    width, height, boundsLow: [-3, 0, -3], boundsHigh: [3, 3, 3],
     report: {
       unsupported: [{ feature: 'KHR_materials_sheen', materials: ['Floor'], note: 'rendered without sheen' }],
       notes: ['the file has no camera in use; the view frames the scene'], triangles: 10_240, degenerateTriangles: 0, vertices: 5200, imageBytes: 0,

@@ -1,5 +1,5 @@
 // A stand-in for limnd, for work on the page and for its tests: serves dist/ and speaks the protocol over a toy renderer.
-//   node dev/fake_server.mjs [PORT]
+//   node dev/fake_server.mjs [--listen 127.0.0.1:8080] [--size 320x240]
 import { createReadStream, existsSync, statSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
@@ -11,24 +11,25 @@ import { cast, makeScene, paint, rayThrough } from './fake_scene.mjs';
 import { crc32c, decodeClient, encodeServer } from './protocol.mjs';
 
 const kTickMs = 40;
-const kFinalSteps = 1024;
 const kMime = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml' };
 const kCosts = {
   material: 're-gather', light: 'relight', node: 'rebuild', environment: 'relight', camera: 're-gather', technique: 're-gather',
   resolve: 'display-only', image: 're-gather',
 };
 
-/** Starts a server on `port` (0: any); resolves to { port, close }. */
-export async function startFakeServer(port = 0) {
+const lastStep = (scene) => scene.parameters.maxSamples ?? 64;
+
+/** Starts a server on `port` (0: any) with a picture of `size`; resolves to { port, world, close }. With `refuse` no socket opens. */
+export async function startFakeServer({ port = 0, size = [320, 240], refuse = false } = {}) {
   const dist = fileURLToPath(new URL('../dist/', import.meta.url));
   const http = createServer((request, reply) => serveFile(dist, request, reply));
-  const world = { scene: makeScene(), steps: 0, editedMs: Date.now(), restarts: 0, edits: 0, clients: new Set() };
-  const sockets = new WebSocketServer({ server: http, path: '/ws', handleProtocols: (offered) => (offered.has('limn.v1') ? 'limn.v1' : false) });
+  const world = { scene: makeScene(...size), steps: 0, editedMs: Date.now(), restarts: 0, edits: 0, clients: new Set() };
+  const sockets = new WebSocketServer({ server: http, path: '/ws', verifyClient: () => !refuse, handleProtocols: (offered) => (offered.has('limn.v1') ? 'limn.v1' : false) });
   sockets.on('connection', (socket) => new Client(world, socket));
   const timer = setInterval(() => tick(world), kTickMs);
   await new Promise((resolve) => http.listen(port, '127.0.0.1', resolve));
   return {
-    port: http.address().port,
+    port: http.address().port, world,
     close: () => {
       clearInterval(timer);
       for (const socket of sockets.clients) socket.terminate();
@@ -54,7 +55,7 @@ function serveFile(dist, request, reply) {
 }
 
 function tick(world) {
-  if (world.steps < kFinalSteps) world.steps = Math.min(kFinalSteps, world.steps === 0 ? 1 : Math.ceil(world.steps * 1.5));
+  if (world.steps < lastStep(world.scene)) world.steps = Math.min(lastStep(world.scene), Math.ceil(world.steps * 1.5) + (world.steps === 0 ? 1 : 0));
   for (const client of world.clients) client.sendFrame();
 }
 
@@ -134,7 +135,7 @@ class Client {
 
   sendFrame() {
     const { scene, steps, editedMs } = this.world;
-    const final = steps === kFinalSteps;
+    const final = steps === lastStep(scene);
     const state = `${scene.sceneRevision}/${scene.viewRevision}`;
     if (steps === 0 || (final && this.finalSent === state)) return;
     if (this.inFlight.size >= 2) return void this.replaced++;
@@ -154,7 +155,7 @@ class Client {
 
   sayStatus() {
     const { steps, restarts, edits, clients, editedMs, scene } = this.world;
-    const idle = steps === kFinalSteps;
+    const idle = steps === lastStep(scene);
     this.say({
       op: 'status', phase: idle ? 'converged' : 'converging', idle, steps, meanSamples: steps, raysPerSecond: idle ? 0 : 3.2e6,
       secondsSinceRestart: (Date.now() - editedMs) / 1000, discardedSamples: 0, editsApplied: edits, restarts, framesPublished: this.frameId,
@@ -175,10 +176,15 @@ function applyEdit(scene, edit) {
   else if (target === 'resolve') Object.assign(scene.resolve, fields);
   else if (target === 'image') Object.assign(scene, fields);
   else if (target === 'technique') Object.assign(scene.parameters, fields.parameters);
-  if (fields.technique) scene.technique = fields.technique;
+  if (!fields.technique) return;
+  scene.technique = fields.technique;
+  scene.parameters = Object.fromEntries(announcement(1).techniques.find((t) => t.name === fields.technique).parameters.map((p) => [p.name, p.default]));
 }
 
 if (import.meta.url === pathToFileURL(process.argv[1] ?? '').href) {
-  const { port } = await startFakeServer(Number(process.argv[2] ?? 8080));
+  const argument = (name) => process.argv[process.argv.indexOf(name) + 1] ?? '';
+  const port = Number(/:(\d+)$/.exec(argument('--listen'))?.[1] ?? 8080);
+  const size = /^(\d+)x(\d+)$/.exec(argument('--size'))?.slice(1).map(Number) ?? [320, 240];
+  await startFakeServer({ port, size });
   console.log(`listening on http://127.0.0.1:${port}/`);
 }

@@ -15,6 +15,9 @@ export type ConnectionState =
   /** The page is hidden for long: the server need not work for nobody. */
   | { kind: 'paused' };
 
+/** A part of the canvas [pixel]. */
+export interface Area { x: number; y: number; width: number; height: number }
+
 export interface PixelHash {
   width: number;
   height: number;
@@ -38,7 +41,7 @@ export type ToWorker =
   | { type: 'retry' }
   | { type: 'hidden'; hidden: boolean }
   | { type: 'hash'; ticket: number }
-  | { type: 'pixel'; ticket: number; x: number; y: number };
+  | { type: 'mean'; ticket: number; area: Area };
 
 export type ToPage =
   | { type: 'state'; state: ConnectionState }
@@ -49,4 +52,4 @@ export type ToPage =
   | { type: 'fault'; text: string }
   | { type: 'file'; header: FrameHeader; bytes: Uint8Array }
   | { type: 'hash'; ticket: number; hash: PixelHash }
-  | { type: 'pixel'; ticket: number; rgba: [number, number, number, number] };
+  | { type: 'mean'; ticket: number; rgb: [number, number, number] };

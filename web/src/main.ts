@@ -21,7 +21,7 @@ import { StreamLink } from './stream_link';
 import { makeTestHook, remember } from './test_hook';
 import { Announcer } from './ui/announcer';
 import { setText } from './ui/dom';
-import { formatNumber } from './ui/format';
+import { formatError, formatNumber, formatSamples } from './ui/format';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 const requestFrame = (callback: (now: number) => void): void => void requestAnimationFrame(callback);
@@ -185,10 +185,11 @@ function onFrame(frame: FrameReport): void {
   rig.aspect = stage.aspect();
   bar.showFrame(frame);
   statistics.onLatencies(desk.onFrame(frame));
-  const error = Number.isFinite(header.estimatedError) ? `, error ${formatNumber(header.estimatedError, 2)}` : '';
-  ledger.showFigures(`${formatNumber(header.meanSamples, 3)} samples${error}`);
+  const error = Number.isFinite(header.estimatedError) ? `, error ${formatError(header.estimatedError)}` : '';
+  ledger.showFigures(`${formatSamples(header.meanSamples)} samples${error}`);
   if (header.phase === 'converged' && before !== 'converged') announcer.say('The picture has converged');
   hook.frame = frame;
+  remember(hook.presented, header);
 }
 
 function onFile(header: FrameHeader, bytes: Uint8Array): void {

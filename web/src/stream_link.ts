@@ -1,4 +1,4 @@
-import type { ConnectionState, FrameReport, Outgoing, PixelHash, ToPage, ToWorker } from './channel';
+import type { Area, ConnectionState, FrameReport, Outgoing, PixelHash, ToPage, ToWorker } from './channel';
 import type { FrameHeader, ServerMessage } from './protocol/messages.gen';
 
 export interface LinkHooks {
@@ -41,8 +41,8 @@ export class StreamLink {
   }
 
   /** Test hook. */
-  pixel(x: number, y: number): Promise<[number, number, number, number]> {
-    return this.ask((ticket) => ({ type: 'pixel', ticket, x, y }));
+  mean(area: Area): Promise<[number, number, number]> {
+    return this.ask((ticket) => ({ type: 'mean', ticket, area }));
   }
 
   private ask<T>(question: (ticket: number) => ToWorker): Promise<T> {
@@ -71,7 +71,7 @@ export class StreamLink {
       case 'file': this.hooks.onFile(data.header, data.bytes); break;
       case 'fault': this.hooks.onFault(data.text); break;
       case 'hash': this.answer(data.ticket, data.hash); break;
-      case 'pixel': this.answer(data.ticket, data.rgba); break;
+      case 'mean': this.answer(data.ticket, data.rgb); break;
     }
   }
 }

@@ -1,6 +1,6 @@
-import type { FrameReport, PixelHash } from './channel';
+import type { Area, FrameReport, PixelHash } from './channel';
 import type { CameraRig } from './camera/rig';
-import type { Ack, Picked } from './protocol/messages.gen';
+import type { Ack, FrameHeader, Picked } from './protocol/messages.gen';
 import type { Model } from './state/model';
 import type { Outcome } from './state/edit_desk';
 import type { Statistics } from './state/statistics';
@@ -14,13 +14,15 @@ export interface TestHook {
   /** The newest presented frame. */
   frame: FrameReport | null;
   /** The last hundred of each, oldest first. */
+  presented: FrameHeader[];
   acks: Ack[];
   outcomes: Outcome[];
   picks: Picked[];
   faults: string[];
   /** SHA-256 over the RGBA bytes of the canvas, row 0 on top. */
   hash(): Promise<PixelHash>;
-  pixel(x: number, y: number): Promise<[number, number, number, number]>;
+  /** Mean sRGB value of an area of the canvas, 0..255. */
+  mean(area: Area): Promise<[number, number, number]>;
 }
 
 declare global {
@@ -31,9 +33,9 @@ const kKept = 100;
 
 export function makeTestHook(model: Model, statistics: Statistics, rig: CameraRig, link: StreamLink): TestHook {
   return {
-    model, statistics, rig, frame: null, acks: [], outcomes: [], picks: [], faults: [],
+    model, statistics, rig, frame: null, presented: [], acks: [], outcomes: [], picks: [], faults: [],
     hash: () => link.hash(),
-    pixel: (x, y) => link.pixel(x, y),
+    mean: (area) => link.mean(area),
   };
 }
 

@@ -30,7 +30,9 @@ export function bindControls(element: HTMLElement, target: GestureTarget): void 
     target.dolly(Math.exp(delta * kWheelRate * (event.ctrlKey ? 4 : 1)));
   }, { passive: false });
   element.addEventListener('contextmenu', (event) => event.preventDefault());
+  element.addEventListener('blur', () => element.classList.remove('by-pointer'));
   element.addEventListener('keydown', (event) => {
+    element.classList.remove('by-pointer');
     if (!event.altKey && !event.ctrlKey && !event.metaKey && handleKey(event.key, event.shiftKey, target)) {
       event.preventDefault();
     }
@@ -74,6 +76,8 @@ function bindPointers(element: HTMLElement, target: GestureTarget): void {
     if (event.button === 1) event.preventDefault(); // no autoscroll
     element.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    // A focus ring tells where keys go; somebody with a mouse need not be told.
+    element.classList.add('by-pointer');
     element.focus({ preventScroll: true });
   });
 

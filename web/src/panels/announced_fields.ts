@@ -72,7 +72,7 @@ function announcedColor(field: EditableField, onInput: (value: Vec3) => void): F
 function announcedColorAlpha(field: EditableField, onInput: (value: readonly number[]) => void): Field<WireValue> {
   let value: readonly number[] = [1, 1, 1, 1];
   const color = announcedColor(field, ([r, g, b]) => onInput((value = [r, g, b, value[3] ?? 1])));
-  const alpha = numberField({ label: 'alpha', minimum: 0, maximum: 1, onInput: (a) => onInput((value = [...value.slice(0, 3), a])) });
+  const alpha = numberField({ label: 'Alpha', minimum: 0, maximum: 1, onInput: (a) => onInput((value = [...value.slice(0, 3), a])) });
   color.element.append(alpha.element);
   return {
     element: color.element,

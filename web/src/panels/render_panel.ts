@@ -46,8 +46,8 @@ export class RenderPanel {
     this.size = selectField('Picture size', [], (value) => this.setSize(value));
     this.knobsOf = '';
     this.root.replaceChildren(
-      h('section', { class: 'sheet', 'aria-label': 'Display' }, h('h3', {}, 'Display'), ...shown, this.fieldOfView.element, this.size.element),
-      h('section', { class: 'sheet', 'aria-label': 'Technique' }, h('h3', {}, 'Technique'), this.technique.element, this.about, this.knobs),
+      h('section', { class: 'sheet', 'aria-label': 'Display settings' }, h('h3', {}, 'Display'), ...shown, this.fieldOfView.element, this.size.element),
+      h('section', { class: 'sheet', 'aria-label': 'Technique and its parameters' }, h('h3', {}, 'Technique'), this.technique.element, this.about, this.knobs),
       h('div', { class: 'buttons' }, h('button', { onClick: () => this.actions.saveExr() }, 'Save EXR')));
     if (this.model.scene) this.refresh(this.model.scene);
   }

@@ -1,7 +1,6 @@
 import type { Model } from '../state/model';
 import type { ConnectionState } from '../channel';
 import { setText } from '../ui/dom';
-import { formatSeconds } from '../ui/format';
 import { nowMs } from '../clock';
 
 export interface Rectangle { left: number; top: number; width: number; height: number }
@@ -78,7 +77,7 @@ export class Stage {
 function staleText(state: ConnectionState, hasPicture: boolean): string {
   const what = hasPicture ? 'Stale picture — ' : '';
   const wait = 'retryAtMs' in state && state.retryAtMs !== undefined ? Math.max(0, state.retryAtMs - nowMs()) / 1000 : null;
-  const again = wait === null ? '' : `; trying again in ${formatSeconds(Math.ceil(wait * 10) / 10)}`;
+  const again = wait === null ? '' : `; trying again in ${wait.toFixed(1)} s`;
   switch (state.kind) {
     case 'connecting': return `${what}connecting…`;
     case 'reconnecting': return `${what}${state.reason}${again}`;

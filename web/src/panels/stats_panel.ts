@@ -3,12 +3,12 @@ import type { Model } from '../state/model';
 import type { Statistics } from '../state/statistics';
 import { nowMs } from '../clock';
 import { h, setText } from '../ui/dom';
-import { formatBytes, formatCount, formatMilliseconds, formatNumber } from '../ui/format';
+import { formatBytes, formatCount, formatError, formatMilliseconds, formatNumber } from '../ui/format';
 import { ErrorPlot } from '../ui/plot';
 
 const kRows = [
   'Samples per pixel', 'Steps', 'Pixels gathered', 'Estimated error', 'Edit to pixels', 'Frames', 'Received', 'Frames left out',
-  'Frame', 'Rays', 'Discarded samples', 'Device',
+  'Frame', 'Rays', 'Discarded samples',
 ] as const;
 type Row = (typeof kRows)[number];
 
@@ -18,6 +18,7 @@ export class StatsPanel {
   private readonly plot = new ErrorPlot();
   private readonly stages = h('div', { class: 'stages' });
   private readonly passes = h('p', { class: 'facts' });
+  private readonly device = h('p', { class: 'facts' });
   private readonly memory = h('p', { class: 'facts' });
 
   constructor(root: HTMLElement, private readonly model: Model, private readonly statistics: Statistics) {
@@ -28,7 +29,7 @@ export class StatsPanel {
       list.append(h('div', {}, h('dt', {}, name), value));
     }
     root.append(
-      h('h3', {}, 'Error over time'), this.plot.element, list,
+      h('h3', {}, 'Error over time'), this.plot.element, list, this.device,
       h('details', { class: 'more', open: true }, h('summary', {}, 'Where the time went'), this.stages, this.passes, this.memory));
     setInterval(() => this.refresh(), 250);
   }
@@ -40,7 +41,7 @@ export class StatsPanel {
     this.showTransport(header);
     if (status) this.showStatus(status);
     if (header && hello) this.showStages(header, hello);
-    if (hello) this.set('Device', hello.device);
+    if (hello) setText(this.device, `${hello.device}, ${hello.server}`);
     this.plot.show(this.statistics.errorPoints);
   }
 
@@ -53,19 +54,19 @@ export class StatsPanel {
     this.set('Samples per pixel', formatNumber(header.meanSamples, 4));
     this.set('Steps', formatCount(header.steps));
     this.set('Pixels gathered', `${formatNumber(header.gatheredShare * 100, 3)} %`);
-    const interval = Number.isFinite(header.errorHigh) ? ` (${formatNumber(header.errorLow, 2)} … ${formatNumber(header.errorHigh, 2)})` : '';
-    this.set('Estimated error', Number.isFinite(header.estimatedError) ? formatNumber(header.estimatedError, 3) + interval : 'not known yet');
+    const interval = Number.isFinite(header.errorHigh) ? ` (${formatError(header.errorLow)}–${formatError(header.errorHigh)})` : '';
+    this.set('Estimated error', Number.isFinite(header.estimatedError) ? formatError(header.estimatedError) + interval : 'not known yet');
   }
 
   private showTransport(header: FrameHeader | undefined): void {
     const s = this.statistics;
     const at = nowMs();
-    const [median, p95] = [s.latencyQuantile(0.5), s.latencyQuantile(0.95)];
-    this.set('Edit to pixels', Number.isFinite(median)
-      ? `${formatMilliseconds(s.lastLatency())} (median ${formatMilliseconds(median)}, p95 ${formatMilliseconds(p95)})` : '–');
+    const p95 = s.latencyQuantile(0.95);
+    this.set('Edit to pixels', Number.isFinite(p95)
+      ? `${formatMilliseconds(s.lastLatency())} (p95 ${formatMilliseconds(p95)})` : '–');
     this.set('Frames', `${formatNumber(s.framesPerSecond(at), 3)} /s, ${formatCount(s.presented)} shown`);
-    this.set('Received', `${formatBytes(s.bytesPerSecond(at))}/s, ${formatBytes(s.bytes)} in all`);
-    this.set('Frames left out', `${formatCount(header?.replaced ?? 0)} by the server, ${formatCount(s.dropped)} here`);
+    this.set('Received', `${formatBytes(s.bytesPerSecond(at))}/s of ${formatBytes(s.bytes)}`);
+    this.set('Frames left out', `${formatCount(header?.replaced ?? 0)} there, ${formatCount(s.dropped)} here`);
     if (!header || !s.last) return;
     const how = header.quality > 0 ? `${header.encoding} q${header.quality}` : header.encoding;
     const divided = header.imageWidth < header.width ? ` from ${header.imageWidth} × ${header.imageHeight}` : '';

@@ -118,17 +118,20 @@ export function numberField(options: NumberOptions): Field<number> {
 
   const scale = sliderScale(options);
   const slider = h('input', { type: 'range', min: 0, max: kSliderSteps, step: 1, 'aria-label': `${options.label}, slider` });
+  const describeSlider = (value: number) => {
+    slider.setAttribute('aria-valuetext', `${formatNumber(value)} ${options.unit ?? ''}`.trim());
+    slider.style.setProperty('--fill', `${(100 * Number(slider.value)) / kSliderSteps}%`);
+  };
   const moveSlider = (value: number) => {
     slider.value = String(scale.positionOf(value));
-    slider.setAttribute('aria-valuetext', `${formatNumber(value)} ${options.unit ?? ''}`.trim());
+    describeSlider(value);
   };
   slider.addEventListener('input', () => {
     const value = scale.valueAt(Number(slider.value));
     entry.set(value);
-    moveSliderText(value);
+    describeSlider(value);
     options.onInput(value);
   });
-  const moveSliderText = (value: number) => slider.setAttribute('aria-valuetext', formatNumber(value));
   entry.input.addEventListener('change', () => {
     const value = parseTyped(entry.input.value, options);
     if (value !== null) moveSlider(value);
@@ -198,14 +201,15 @@ export function colorField(options: ColorOptions): Field<Vec3> {
     onInput: ([r = 0, g = 0, b = 0]) => changed([r, g, b]),
   });
   const strengthField = bounded ? null : numberField({
-    label: 'strength', minimum: 0, maximum: options.maximum, softMaximum: options.softMaximum, logarithmic: true,
+    label: 'Strength', minimum: 0, maximum: options.maximum, softMaximum: options.softMaximum, logarithmic: true,
     onInput: (strength) => {
       const [r, g, b] = splitStrength(color).color;
       changed([r * strength, g * strength, b * strength]);
     },
   });
   const show = () => {
-    if (document.activeElement !== picker) picker.value = hexFromLinear(bounded ? color : splitStrength(color).color);
+    const unlit = Math.max(...color) === 0;
+    if (document.activeElement !== picker) picker.value = hexFromLinear(bounded || unlit ? color : splitStrength(color).color);
     numbers.set(color);
     strengthField?.set(splitStrength(color).strength);
   };
@@ -223,7 +227,7 @@ export function colorField(options: ColorOptions): Field<Vec3> {
   numbers.element.querySelector('.name')?.remove();
   return {
     element: h('div', { class: 'field color', title: options.description },
-      h('label', { for: id }, labelText(options.label, options.unit)), picker, numbers.element, strengthField?.element),
+      h('label', { for: id }, labelText(options.label, options.unit && options.unit !== '1' ? options.unit : 'linear')), picker, numbers.element, strengthField?.element),
     set(value) {
       color = value;
       show();
@@ -238,7 +242,7 @@ export function selectField(label: string, choices: readonly Choice[], onInput: 
   const options = choices.map((c) => h('option', { value: c.value, title: c.description }, c.title));
   const select = h('select', { id, onChange: () => onInput(select.value) }, ...options);
   return {
-    element: h('div', { class: 'field' }, h('label', { for: id }, labelText(label)), select),
+    element: h('div', { class: 'field choice' }, h('label', { for: id }, labelText(label)), select),
     set(value) { select.value = value; },
   };
 }

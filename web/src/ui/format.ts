@@ -9,10 +9,21 @@ export function formatNumber(value: number, digits = 4): string {
   return String(Number(value.toPrecision(digits)));
 }
 
+/** An error for people: two significant digits, with an exponent below a hundredth. */
+export function formatError(value: number): string {
+  if (!Number.isFinite(value)) return kMissing;
+  return value >= 0.01 || value === 0 ? String(Number(value.toPrecision(2))) : value.toExponential(1);
+}
+
+/** Samples per pixel: whole from ten on. */
+export function formatSamples(value: number): string {
+  return value >= 10 ? formatCount(value) : formatNumber(value, 2);
+}
+
 export function formatSeconds(seconds: number): string {
   if (!Number.isFinite(seconds)) return kMissing;
   if (seconds < 10) return `${seconds.toFixed(2)} s`;
-  if (seconds < 100) return `${seconds.toFixed(1)} s`;
+  if (seconds < 60) return `${seconds.toFixed(1)} s`;
   return `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s`;
 }
 
@@ -37,8 +48,11 @@ export function formatCount(value: number): string {
   return Number.isFinite(value) ? Math.round(value).toLocaleString('en') : kMissing;
 }
 
+const kSpellings: Record<string, string> = { pbr: 'PBR', aces: 'ACES', agx: 'AgX', ior: 'IOR', uv: 'UV', vpl: 'VPL', exr: 'EXR' };
+
 /** "baseColor" → "Base color": what people read for a name of the wire. */
 export function titleFromName(name: string): string {
-  const words = name.replace(/[-_]/g, ' ').replace(/([a-z0-9])([A-Z])/g, '$1 $2').toLowerCase().trim();
-  return words.charAt(0).toUpperCase() + words.slice(1);
+  const words = name.replace(/[-_]/g, ' ').replace(/([a-z0-9])([A-Z])/g, '$1 $2').toLowerCase().trim().split(/\s+/);
+  const title = words.map((word) => kSpellings[word] ?? word).join(' ');
+  return title.charAt(0).toUpperCase() + title.slice(1);
 }

@@ -1,5 +1,5 @@
 import type { EncodedFrame } from './decode_queue';
-import type { PixelHash } from '../channel';
+import type { Area, PixelHash } from '../channel';
 
 /** The canvas: draws decoded pictures at the display's pace and reads them back for tests. */
 export class Presenter {
@@ -46,10 +46,13 @@ export class Presenter {
     return { width, height, sha256, distinct: countDistinct(pixels) };
   }
 
-  /** RGBA of one pixel. Test hook. */
-  pixel(x: number, y: number): [number, number, number, number] {
-    const [r = 0, g = 0, b = 0, a = 0] = this.context.getImageData(x, y, 1, 1).data;
-    return [r, g, b, a];
+  /** Mean sRGB value of an area, 0..255. Test hook. */
+  mean({ x, y, width, height }: Area): [number, number, number] {
+    const pixels = this.context.getImageData(x, y, width, height).data;
+    const sum: [number, number, number] = [0, 0, 0];
+    for (let i = 0; i < pixels.length; i++) if (i % 4 < 3) sum[i % 4]! += pixels[i]!;
+    const count = pixels.length / 4;
+    return [sum[0] / count, sum[1] / count, sum[2] / count];
   }
 }
 

@@ -90,6 +90,6 @@ scope.onmessage = async ({ data }: MessageEvent<ToWorker>) => {
     case 'retry': connection?.hurry(); break;
     case 'hidden': setHidden(data.hidden); break;
     case 'hash': if (presenter) tell({ type: 'hash', ticket: data.ticket, hash: await presenter.hash() }); break;
-    case 'pixel': if (presenter) tell({ type: 'pixel', ticket: data.ticket, rgba: presenter.pixel(data.x, data.y) }); break;
+    case 'mean': if (presenter) tell({ type: 'mean', ticket: data.ticket, rgb: presenter.mean(data.area) }); break;
   }
 };

@@ -1,0 +1,102 @@
+import { describe, expect, it } from 'vitest';
+import type { FrameReport, Outgoing } from '../src/channel';
+import { describeOutcome } from '../src/panels/ledger';
+import type { FrameHeader } from '../src/protocol/messages.gen';
+import { EditDesk, type Outcome } from '../src/state/edit_desk';
+
+function makeDesk() {
+  const posted: { ticket: number; message: Outgoing }[] = [];
+  const outcomes: Outcome[] = [];
+  let frames: ((now: number) => void)[] = [];
+  let clock = 1000;
+  const desk = new EditDesk({
+    post: (ticket, message) => void posted.push({ ticket, message }),
+    requestFrame: (callback) => void frames.push(callback),
+    now: () => clock,
+    onOutcome: (outcome) => void outcomes.push(outcome),
+  });
+  const displayFrame = (now: number) => {
+    clock = 1000 + now;
+    const due = frames;
+    frames = [];
+    due.forEach((callback) => callback(now));
+  };
+  return { desk, posted, outcomes, displayFrame };
+}
+
+const picture = (ackSeq: number, presentedMs: number, dropped = false) =>
+  ({ header: { ackSeq } as FrameHeader, presentedMs, dropped }) as FrameReport;
+const roughness = (value: number) => ({ target: 'material', material: 2, roughness: value }) as const;
+const ack = (seq: number, cost: 'relight' | 'none' | 're-gather' = 'relight', superseded = false) =>
+  ({ op: 'ack', seq, cost, sceneRevision: 2, viewRevision: 1, superseded }) as const;
+
+describe('EditDesk', () => {
+  it('sends the newest of a field once a display frame, and other fields beside it', () => {
+    const { desk, posted, displayFrame } = makeDesk();
+    desk.set('Roughness', roughness(0.1));
+    desk.set('Roughness', roughness(0.2));
+    desk.set('Metallic', { target: 'material', material: 2, metallic: 1 });
+    desk.set('Roughness', { target: 'material', material: 3, roughness: 0.9 });
+    displayFrame(100);
+    expect(posted.map((p) => p.message)).toEqual([
+      { op: 'set', ...roughness(0.2) }, { op: 'set', target: 'material', material: 2, metallic: 1 },
+      { op: 'set', target: 'material', material: 3, roughness: 0.9 },
+    ]);
+  });
+
+  it('waits for its turn on displays faster than 60 Hz', () => {
+    const { desk, posted, displayFrame } = makeDesk();
+    for (let now = 0; now < 1000; now += 1000 / 240) {
+      desk.set('Roughness', roughness(now / 1000));
+      displayFrame(now);
+    }
+    expect(posted.length).toBeLessThanOrEqual(61);
+    expect(posted.length).toBeGreaterThan(40);
+  });
+
+  it('follows an edit from the input to the first picture that shows it', () => {
+    const { desk, posted, outcomes, displayFrame } = makeDesk();
+    desk.set('Roughness', roughness(0.1));
+    displayFrame(16);
+    desk.onSent(posted[0]!.ticket, 7);
+    desk.onAck(ack(7));
+    expect(desk.onFrame(picture(6, 1100))).toEqual([]);
+    expect(desk.onFrame(picture(7, 1150, true))).toEqual([]);
+    expect(desk.onFrame(picture(8, 1180))).toEqual([180]);
+    expect(desk.onFrame(picture(9, 1300))).toEqual([]);
+    expect(outcomes.map(describeOutcome)).toEqual(['Roughness: relight …', 'Roughness: relight, 0.18 s to first pixels']);
+  });
+
+  it('asks for no picture where nothing changed', () => {
+    const { desk, posted, outcomes, displayFrame } = makeDesk();
+    desk.set('Roughness', roughness(0.1));
+    displayFrame(16);
+    desk.onSent(posted[0]!.ticket, 3);
+    desk.onAck(ack(3, 'none'));
+    expect(outcomes.map(describeOutcome)).toEqual(['Roughness: nothing changed']);
+  });
+
+  it('tells of refused, unsent and lost edits', () => {
+    const { desk, posted, outcomes, displayFrame } = makeDesk();
+    ['A', 'B', 'C'].forEach((label, i) => desk.set(label, { target: 'light', light: i, intensity: 1 }));
+    displayFrame(16);
+    desk.onSent(posted[0]!.ticket, 4);
+    desk.onSent(posted[1]!.ticket, null, 'there is no connection');
+    desk.onSent(posted[2]!.ticket, 5);
+    expect(desk.onError({ op: 'error', seq: 4, code: 'out-of-range', message: 'too much', place: 'seq 4 /intensity' })).toBe(true);
+    expect(desk.onError({ op: 'error', seq: 99, code: 'busy', message: 'somebody else' })).toBe(false);
+    desk.onDisconnected();
+    expect(outcomes.map(describeOutcome)).toEqual([
+      'B: not sent: there is no connection', 'A: too much (seq 4 /intensity)', 'C: the connection broke before the server answered',
+    ]);
+  });
+
+  it('knows while the camera is on its way', () => {
+    const { desk, posted } = makeDesk();
+    desk.camera({ eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0] });
+    desk.onSent(posted[0]!.ticket, 2);
+    expect(desk.cameraPending()).toBe(true);
+    desk.onAck(ack(2, 're-gather', true));
+    expect(desk.cameraPending()).toBe(false);
+  });
+});
