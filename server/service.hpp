@@ -6,6 +6,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "renderer/session/mailbox.hpp"
@@ -23,6 +24,7 @@ struct ServiceConfig {
   std::string serverName = "limnd";
   std::vector<TechniqueInfo> techniques;
   std::vector<std::string> layers;         ///< that save takes
+  std::vector<std::string> stages;         ///< of a picture's times, as far as is known before the first
   uint32_t maxImageSide = 4096;            ///< [pixel]
   std::filesystem::path assetRoot;
   SceneReader readScene;
@@ -85,6 +87,7 @@ class Service : private TransportHandler {
   friend struct ReplyHandler;
   void routeReplies();
   void describeForAll();
+  void learnView(const SceneSummary& scene);
   void broadcastScene(const SceneSummary& scene, protocol::SceneCause cause, ConnectionId except);
   void sendStatus(ClientSession& session, const protocol::Status& status);
   void checkErrorWaits(ClientSession& session, const FrameInfo& info);
@@ -113,7 +116,7 @@ class Service : private TransportHandler {
   double m_aloneSince = 0.0;               ///< [s] no client since then
 
   View m_view;                             ///< as the edits sent so far leave it; completes lenses of camera edits
-  uint64_t m_viewEdits = 0, m_viewEditsAtDescribe = 0;
+  std::set<std::pair<ConnectionId, uint32_t>> m_viewEdits;  ///< client and seq of those that were not answered yet
   std::set<ConnectionId> m_editors;        ///< edited since the others were last told
   bool m_describing = false;               ///< a describe of our own is on its way
   bool m_viewDoubtful = true;              ///< an edit was refused, or nothing is known yet

@@ -123,6 +123,7 @@ void Service::greet(ClientSession& session, const protocol::ClientHello& hello) 
   const Status status = m_replies.status();
   const auto frame = m_frames.newest();
   session.stages = stageNames(frame && !frame->info.stages.empty() ? frame->info.stages : status.stages);
+  if (session.stages.empty()) session.stages = m_config.stages;
 
   const TransportConfig& transport = m_config.transport;
   protocol::ServerHello answer;
@@ -164,7 +165,7 @@ void Service::edit(ClientSession& session, uint32_t seq, const std::vector<proto
   if (session.unanswered == before) return;
   if (moves) {
     m_view = view;
-    ++m_viewEdits;
+    m_viewEdits.emplace(session.id(), seq);
   }
   session.lastEditSeq = seq;
   ++m_counters.edits;

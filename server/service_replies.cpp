@@ -21,6 +21,7 @@ struct ReplyHandler {
   ClientSession* session;
 
   void operator()(const EditAck& ack) const {
+    service.m_viewEdits.erase({ack.to.client, ack.to.seq});
     const bool effective = !ack.superseded && ack.cost != CostClass::none;
     if (effective) service.m_editors.insert(ack.to.client);
     if (!session) return;
@@ -29,7 +30,7 @@ struct ReplyHandler {
     service.send(*session, toWire(ack));
   }
   void operator()(const ErrorReply& reply) const {
-    service.m_viewDoubtful = true;
+    if (service.m_viewEdits.erase({reply.to.client, reply.to.seq}) > 0) service.m_viewDoubtful = true;
     if (!session) return;
     session->saving = false;
     session->loading = false;
@@ -37,6 +38,7 @@ struct ReplyHandler {
     service.sendError(*session, reply.to.seq, reply.error);
   }
   void operator()(const DescribeReply& reply) const {
+    service.learnView(*reply.scene);
     if (reply.to.client == kNobody) return onOwnDescription(*reply.scene);
     if (!session) return;
     const bool joined = reply.to.seq == session->helloSeq;
@@ -45,7 +47,7 @@ struct ReplyHandler {
     service.send(*session, scene);
   }
   void operator()(const LoadReply& reply) const {
-    service.m_view = reply.scene->view;
+    service.learnView(*reply.scene);
     if (session) {
       session->loading = false;
       service.send(*session, protocol::Loaded{reply.to.seq, reply.loadSeconds, reply.scene->sceneRevision, {reply.scene->hash}});
@@ -76,10 +78,6 @@ struct ReplyHandler {
   }
   void onOwnDescription(const SceneSummary& scene) const {
     service.m_describing = false;
-    if (service.m_viewEdits == service.m_viewEditsAtDescribe) {
-      service.m_view = scene.view;
-      service.m_viewDoubtful = false;
-    }
     const std::set<ConnectionId> editors = std::exchange(service.m_editors, {});
     if (editors.empty()) return;
     service.broadcastScene(scene, protocol::SceneCause::edited, editors.size() == 1 ? *editors.begin() : kNobody);
@@ -108,8 +106,13 @@ void Service::describeForAll() {
   if (!needed) m_editors.clear();
   if (!needed || m_describing || now - m_lastBroadcast < kBroadcastSeconds) return;
   m_lastBroadcast = now;
-  m_viewEditsAtDescribe = m_viewEdits;
   m_describing = m_mailbox.push(DescribeRequest{});
+}
+
+void Service::learnView(const SceneSummary& scene) {
+  if (!m_viewEdits.empty()) return;   // it does not show them yet
+  m_view = scene.view;
+  m_viewDoubtful = false;
 }
 
 void Service::broadcastScene(const SceneSummary& scene, protocol::SceneCause cause, ConnectionId except) {

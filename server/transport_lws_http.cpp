@@ -105,7 +105,9 @@ int LwsTransport::filterHttp(lws* wsi) {
 }
 
 int LwsTransport::confirmUpgrade(lws* wsi) {
-  // The argument `in` of this callback is never touched: lws 4.1.6 may have freed what it points to (CVE-2025-11677).
+  // The argument `in` of this callback is never touched: lws 4.1.6 may have freed what it points to (CVE-2025-11677). It
+  // answers an unknown Upgrade with 403 itself and comes here all the same, on a kept-alive connection without headers.
+  if (lws_hdr_total_length(wsi, WSI_TOKEN_UPGRADE) <= 0) return -1;
   const RequestHeaders headers = readHeaders(wsi, "");
   Verdict verdict = judgeUpgrade(m_config.access, headers);
   if (verdict.allowed() && m_drainAsked) verdict = {503, "the daemon stops"};

@@ -1,0 +1,238 @@
+// What a well-behaved client hears, from hello to bye.
+#include <gmock/gmock.h>
+
+#include "tests/service/service_fixture.hpp"
+
+namespace limn::server::testing {
+namespace {
+
+using protocol::Encoding;
+using ::testing::ElementsAre;
+
+TEST(Conversation, helloIsAnsweredWithHelloSceneAndStatus) {
+  TestService server;
+  TestClient client(server.port());
+  const protocol::ServerHello hello = client.greet();
+  EXPECT_EQ(hello.seq, 1u);
+  EXPECT_EQ(hello.version, 1u);
+  EXPECT_EQ(hello.limits.framesInFlight, 2u);
+  EXPECT_EQ(hello.limits.maxControlBytes, 1u << 20);
+  ASSERT_EQ(hello.techniques.size(), 1u);
+  EXPECT_EQ(hello.techniques[0].parameters.at(0).name, "depth");
+  EXPECT_THAT(hello.encodings, ElementsAre(Encoding::jpeg, Encoding::png));
+  EXPECT_EQ(hello.editable, protocol::editableTargets());
+  const auto scene = client.await<protocol::SceneMessage>();
+  EXPECT_EQ(scene.cause, protocol::SceneCause::joined);
+  EXPECT_FALSE(scene.seq);
+  EXPECT_EQ(scene.materials.size(), 2u);
+}
+
+TEST(Conversation, statusTellsTheDeviceAndTheClientsShare) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet();
+  const auto status = client.await<protocol::Status>([](const protocol::Status& s) { return s.idle && s.framesSent > 0; });
+  EXPECT_EQ(status.clients, 1u);
+  EXPECT_EQ(status.technique, "fake");
+  EXPECT_EQ(status.phase, protocol::Phase::converged);
+}
+
+TEST(Conversation, pingIsAnsweredWithThePongOfItsSeq) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet();
+  client.send(protocol::Ping{7});
+  EXPECT_GT(client.awaitReply<protocol::Pong>(7).serverSeconds, 0.0);
+}
+
+TEST(Conversation, everyEditIsAcknowledgedWithItsCost) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet();
+  uint32_t seq = client.nextSeq();
+  client.send(setRoughness(seq, 1, 0.25f));
+  EXPECT_EQ(client.awaitReply<protocol::Ack>(seq).cost, protocol::CostClass::relight);
+  seq = client.nextSeq();
+  client.send(moveCamera(seq, 3.0));
+  EXPECT_EQ(client.awaitReply<protocol::Ack>(seq).cost, protocol::CostClass::reGather);
+  seq = client.nextSeq();
+  protocol::Batch batch{seq, {protocol::MaterialEdit{}, protocol::LightEdit{}, protocol::NodeEdit{}, protocol::EnvironmentEdit{},
+                              protocol::CameraEdit{}, protocol::TechniqueEdit{}, protocol::ResolveEdit{}, protocol::ImageEdit{64, 48}}};
+  client.send(batch);
+  EXPECT_EQ(client.awaitReply<protocol::Ack>(seq).seq, seq);
+}
+
+TEST(Conversation, everyTargetOfSetIsTaken) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet();
+  protocol::CameraEdit camera;
+  camera.view = moveCamera(0, 2.0).view;
+  const std::vector<protocol::Edit> edits{protocol::MaterialEdit{}, protocol::LightEdit{}, protocol::NodeEdit{},
+                                          protocol::EnvironmentEdit{}, camera, protocol::TechniqueEdit{},
+                                          protocol::ResolveEdit{}, protocol::ImageEdit{64, 48}};
+  for (const protocol::Edit& edit : edits) {
+    const uint32_t seq = client.nextSeq();
+    client.send(protocol::SetMessage{seq, edit});
+    EXPECT_EQ(client.awaitReply<protocol::Ack>(seq).seq, seq) << protocol::targetOf(edit);
+  }
+}
+
+TEST(Conversation, aPictureShowsTheEditThatItAcknowledges) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet();
+  const uint32_t seq = client.nextSeq();
+  client.send(setRoughness(seq, 0, 0.5f));
+  const auto ack = client.awaitReply<protocol::Ack>(seq);
+  const auto picture = client.awaitPicture([&](const protocol::FrameHeader& h) { return h.ackSeq == seq; });
+  EXPECT_GE(picture.header.sceneRevision, ack.sceneRevision);
+  EXPECT_EQ(picture.header.stageCount, 2);
+  EXPECT_EQ(picture.header.stageMs[0], 1.5f);
+}
+
+TEST(Conversation, absentLensFieldsKeepTheirValue) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet();
+  client.await<protocol::SceneMessage>();
+  uint32_t seq = client.nextSeq();
+  client.send(moveCamera(seq, 5.0));
+  client.awaitReply<protocol::Ack>(seq);
+  seq = client.nextSeq();
+  client.send(protocol::Describe{seq});
+  const auto scene = client.await<protocol::SceneMessage>([&](const auto& s) { return s.seq == seq; });
+  EXPECT_EQ(scene.cause, protocol::SceneCause::asked);
+  EXPECT_EQ(scene.view.eye[0], 5.0);
+  EXPECT_EQ(scene.view.yfov, 0.625f);
+}
+
+TEST(Conversation, pickNamesWhatIsThereOrNothing) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet();
+  uint32_t seq = client.nextSeq();
+  client.send(protocol::Pick{seq, 1, 1});
+  EXPECT_TRUE(client.awaitReply<protocol::Picked>(seq).hit);
+  seq = client.nextSeq();
+  client.send(protocol::Pick{seq, 60, 1});
+  const auto miss = client.awaitReply<protocol::Picked>(seq);
+  EXPECT_FALSE(miss.hit);
+  EXPECT_FALSE(miss.node);
+}
+
+TEST(Conversation, saveSendsAFileThatTakesNoCredit) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet(false);
+  const uint32_t seq = client.nextSeq();
+  client.send(protocol::Save{seq, std::vector<std::string>{"beauty"}});
+  EXPECT_EQ(client.awaitReply<protocol::Saved>(seq).bytes, 300000u);
+  const auto file = client.awaitPicture([](const protocol::FrameHeader& h) { return h.kind == protocol::FrameKind::file; });
+  EXPECT_EQ(file.header.ackSeq, seq);
+  EXPECT_EQ(file.payload.size(), 300000u);
+  EXPECT_LE(client.longestFragment, protocol::kMaxFragmentBytes);
+}
+
+TEST(Conversation, unknownLayerIsNamedInTheError) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet(false);
+  const uint32_t seq = client.nextSeq();
+  client.send(protocol::Save{seq, std::vector<std::string>{"nonsense"}});
+  const auto error = client.await<protocol::ErrorMessage>();
+  EXPECT_EQ(error.code, "unknown-name");
+  EXPECT_THAT(error.message, ::testing::HasSubstr("nonsense"));
+}
+
+TEST(Conversation, waitIsAnsweredAtTheSteps) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet();
+  uint32_t seq = client.nextSeq();
+  client.send(protocol::Wait{seq, 2u, std::nullopt});
+  EXPECT_GE(client.awaitReply<protocol::Waited>(seq).steps, 2u);
+  seq = client.nextSeq();
+  client.send(protocol::Wait{seq, std::nullopt, std::nullopt});
+  EXPECT_EQ(client.awaitReply<protocol::Waited>(seq).steps, 4u);
+}
+
+TEST(Conversation, waitForAnErrorIsAnsweredOnceThePictureIsSoGood) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet();
+  const uint32_t edit = client.nextSeq();
+  client.send(setRoughness(edit, 0, 0.75f));
+  const uint32_t seq = client.nextSeq();
+  client.send(protocol::Wait{seq, std::nullopt, 0.34f});
+  EXPECT_GE(client.awaitReply<protocol::Waited>(seq).steps, 3u);
+}
+
+TEST(Conversation, waitForAnErrorIsNotHeldUpByAnEditThatFailed) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet();
+  const uint32_t edit = client.nextSeq();
+  client.send(setRoughness(edit, 99, 0.75f));
+  const uint32_t seq = client.nextSeq();
+  client.send(protocol::Wait{seq, std::nullopt, 0.5f});
+  EXPECT_GE(client.awaitReply<protocol::Waited>(seq).steps, 2u);
+}
+
+TEST(Conversation, anEditIsToldToTheOthersAndNotToItsAuthor) {
+  TestService server;
+  TestClient author(server.port()), other(server.port());
+  author.greet();
+  other.greet();
+  other.await<protocol::SceneMessage>();
+  const uint32_t seq = author.nextSeq();
+  author.send(setRoughness(seq, 1, 0.125f));
+  const auto scene = other.await<protocol::SceneMessage>();
+  EXPECT_EQ(scene.cause, protocol::SceneCause::edited);
+  EXPECT_EQ(scene.materials.at(1).roughness, 0.125f);
+  author.send(protocol::Ping{author.nextSeq()});
+  while (author.step() && !(author.text && std::holds_alternative<protocol::Pong>(*author.text)))
+    if (author.text && std::holds_alternative<protocol::SceneMessage>(*author.text)) {
+      EXPECT_NE(std::get<protocol::SceneMessage>(*author.text).cause, protocol::SceneCause::edited);
+    }
+}
+
+TEST(Conversation, byeIsAnsweredAndTheSocketClosesWith1000) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet(false);
+  client.send(protocol::ClientBye{client.nextSeq()});
+  client.await<protocol::ServerBye>();
+  while (client.step()) {
+  }
+  EXPECT_EQ(client.closeCode, 1000);
+}
+
+TEST(Conversation, drainSaysByeAndClosesWith1001) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet(false);
+  server.service->drain();
+  client.await<protocol::ServerBye>();
+  while (client.step()) {
+  }
+  EXPECT_EQ(client.closeCode, 1001);
+  server.loop.join();
+  server.loop = std::thread([] {});
+}
+
+TEST(Conversation, clientsThatDoNotWatchGetNoPictures) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet(false);
+  for (int i = 0; i < 5; ++i) {
+    const uint32_t seq = client.nextSeq();
+    client.send(setRoughness(seq, 0, 0.1f * float(i)));
+    client.awaitReply<protocol::Ack>(seq);
+  }
+  EXPECT_EQ(client.picturesSeen, 0u);
+  EXPECT_EQ(server.renderer->framesPublished(), 0u);
+}
+
+}  // namespace
+}  // namespace limn::server::testing

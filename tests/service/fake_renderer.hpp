@@ -1,0 +1,56 @@
+#pragma once
+#include <atomic>
+#include <map>
+#include <thread>
+
+#include "renderer/session/mailbox.hpp"
+
+namespace limn::server::testing {
+
+/// Stands where the render thread stands: drains a mailbox, answers, publishes pictures that can be told apart. Every edit
+/// restarts it; after `passes` pictures it has converged and sleeps.
+class FakeRenderer {
+ public:
+  struct Options {
+    uint32_t width = 64, height = 48;    ///< [pixel]
+    uint32_t passes = 4;                 ///< pictures after a restart; the last one is Phase::converged
+    double frameSeconds = 0.001;
+    uint32_t materials = 2;
+    bool noisy = false;                  ///< pictures that hardly compress
+  };
+
+  FakeRenderer(const Options& options, Mailbox& mailbox, FrameSlot& frames, StatusQueue& replies);
+  ~FakeRenderer();
+
+  uint64_t framesPublished() const { return m_published; }
+  /// The pixels of a picture, for comparison with what arrived.
+  static std::vector<uint8_t> pixels(const Options& options, uint64_t frameId);
+  /// Held: the mailbox is not drained.
+  void hold(bool held) { m_held = held; }
+
+ private:
+  void run();
+  void handle(const Request& request);
+  void publish();
+  std::shared_ptr<const SceneSummary> describe() const;
+  void answerWaits();
+
+  const Options m_options;
+  Mailbox& m_mailbox;
+  FrameSlot& m_frames;
+  StatusQueue& m_replies;
+  std::atomic<uint64_t> m_published{0};
+  std::atomic<bool> m_held{false};
+
+  // Render thread from here on.
+  SceneSummary m_scene;
+  std::map<uint64_t, uint32_t> m_applied;
+  std::vector<WaitRequest> m_waits;
+  uint32_t m_steps = 0;
+  uint64_t m_frameId = 0, m_edits = 0, m_restarts = 0;
+  bool m_watched = false;
+  double m_editAt = 0.0;
+  std::thread m_thread;
+};
+
+}  // namespace limn::server::testing

@@ -1,0 +1,201 @@
+// Peers that are slow, that vanish, and that load scenes.
+#include <filesystem>
+#include <fstream>
+
+#include "tests/service/service_fixture.hpp"
+
+namespace limn::server::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+TestService::Options endlessLarge() {
+  TestService::Options options;
+  options.renderer.passes = 1u << 30;
+  options.renderer.noisy = true;
+  options.renderer.width = 512;
+  options.renderer.height = 512;
+  options.renderer.frameSeconds = 0.005;
+  return options;
+}
+
+TEST(Peers, aReaderThatStopsIsCutOffAndOthersGoOn) {
+  TestService::Options options = endlessLarge();
+  options.configure = [](ServiceConfig& config) { config.transport.stalledSeconds = 0.5; };
+  TestService server(options);
+  TestClient stopped(server.port(), 4096), reads(server.port());
+  stopped.acknowledges = false;
+  stopped.greet(std::nullopt, std::vector<protocol::Encoding>{protocol::Encoding::png});
+  reads.greet();
+  // From here on `stopped` reads nothing: 900 KB of picture do not fit into its buffers.
+  uint32_t pictures = 0;
+  while (server.tryMetric("limn_stalled_total") != 1.0) {
+    reads.awaitPicture();
+    ++pictures;
+    ASSERT_LT(pictures, 100000u);
+  }
+  EXPECT_GT(pictures, 5u);
+  server.waitForMetric("limn_clients", 1.0);
+  reads.awaitPicture();
+}
+
+TEST(Peers, whatWaitsForASlowReaderIsBounded) {
+  TestService::Options options;
+  options.configure = [](ServiceConfig& config) {
+    config.transport.messagesPerSecond = 1e6;
+    config.transport.messageBurst = 1e6;
+    config.transport.byteBurst = 1e9;
+  };
+  TestService server(options);
+  TestClient slow(server.port(), 4096);
+  slow.greet(false);
+  // Asks for files and never reads them: each is bounded to one at a time, so the queue cannot grow.
+  for (uint32_t seq = 2; seq < 200; ++seq) slow.send(protocol::Save{seq, std::nullopt});
+  TestClient other(server.port());
+  other.greet();
+  other.awaitPicture([](const auto& h) { return h.flags & protocol::kFrameFinal; });
+  uint32_t saved = 0, busy = 0;
+  while (saved + busy < 198 && slow.step()) {
+    if (!slow.text) continue;
+    saved += std::holds_alternative<protocol::Saved>(*slow.text);
+    busy += std::holds_alternative<protocol::ErrorMessage>(*slow.text);
+  }
+  EXPECT_EQ(saved + busy, 198u);
+}
+
+TEST(Peers, theyMayVanishAtAnyByte) {
+  TestService server;
+  const std::string hello = frameBytes(RawClient::Opcode::text, R"({"op":"hello","seq":1,"version":1,"client":"cut"})", true, true);
+  const std::string edit = frameBytes(RawClient::Opcode::text, R"({"op":"set","seq":2,"target":"material","material":0,"roughness":0.5})", true, true);
+  const std::string whole = RawClient::handshake(server.port()) + hello + edit;
+  for (size_t cut = 0; cut <= whole.size(); cut += 7)
+    for (const bool reset : {false, true}) {
+      RawClient client(server.port());
+      client.sendBytes(std::string_view(whole).substr(0, cut));
+      if (reset) client.reset();
+      else client.shut();
+    }
+  server.waitForMetric("limn_clients", 0.0);
+  server.waitForMetric("limn_connections", 1.0);
+  TestClient after(server.port());
+  after.greet();
+  after.awaitPicture();
+}
+
+TEST(Peers, theyMayVanishInTheMiddleOfAPicture) {
+  TestService server(endlessLarge());
+  for (int i = 0; i < 20; ++i) {
+    TestClient client(server.port(), 4096);
+    client.greet(std::nullopt, std::vector<protocol::Encoding>{protocol::Encoding::png});
+    if (i % 2 == 0) client.socket.reset();
+  }
+  server.waitForMetric("limn_clients", 0.0);
+  TestClient after(server.port());
+  after.greet();
+  after.awaitPicture();
+}
+
+TEST(Peers, theLastOneToLeavePutsTheRendererToSleep) {
+  TestService server(endlessLarge());
+  {
+    TestClient client(server.port());
+    client.greet();
+    client.awaitPicture();
+  }
+  server.waitForMetric("limn_clients", 0.0);
+  TestClient quiet(server.port());
+  quiet.greet(false);
+  const uint32_t seq = quiet.nextSeq();
+  quiet.send(protocol::Describe{seq});   // behind the news that nobody watches
+  quiet.await<protocol::SceneMessage>([&](const auto& s) { return s.seq == seq; });
+  const uint64_t published = server.renderer->framesPublished();
+  for (uint32_t i = 0; i < 5; ++i) {
+    quiet.send(protocol::Describe{quiet.nextSeq()});
+    quiet.await<protocol::SceneMessage>();
+  }
+  EXPECT_EQ(server.renderer->framesPublished(), published);
+}
+
+TEST(Peers, idleExitEndsTheLoop) {
+  TestService::Options options;
+  options.configure = [](ServiceConfig& config) { config.idleExitSeconds = 0.2; };
+  TestService server(options);
+  {
+    TestClient client(server.port());
+    client.greet();
+  }
+  server.loop.join();
+  server.loop = std::thread([] {});
+}
+
+TEST(Loading, aSceneUnderTheRootIsLoadedAndToldToAll) {
+  const fs::path root = fs::temp_directory_path() / ("limn-load-" + std::to_string(getpid()));
+  fs::create_directories(root / "sub");
+  std::ofstream(root / "sub" / "room.glb") << "glTF";
+  std::ofstream(root / "bad.glb") << "no";
+  fs::create_symlink("/etc", root / "out");
+  TestService::Options options;
+  options.configure = [&](ServiceConfig& config) {
+    config.assetRoot = root;
+    config.readScene = [](const fs::path& file) -> Result<LoadedScene> {
+      if (file.filename() == "bad.glb") return Error{"bad-file", "not glTF", "bad.glb#/asset"};
+      LoadedScene loaded;
+      loaded.scene.name = file.filename().string();
+      return loaded;
+    };
+  };
+  TestService server(options);
+  TestClient asks(server.port()), other(server.port());
+  asks.greet(false);
+  other.greet(false);
+  const auto before = other.await<protocol::SceneMessage>();
+  asks.send(protocol::Load{10, "bad.glb"});
+  const auto error = asks.await<protocol::ErrorMessage>();
+  EXPECT_EQ(error.code, "bad-file");
+  EXPECT_EQ(error.place, "bad.glb#/asset");
+  EXPECT_EQ(error.seq, 10u);
+  asks.send(protocol::Load{11, "out/passwd"});
+  EXPECT_EQ(asks.await<protocol::ErrorMessage>().code, "io");
+
+  asks.send(protocol::Load{12, "sub/room.glb"});
+  const auto loaded = asks.awaitReply<protocol::Loaded>(12);
+  EXPECT_NE(loaded.hash.value, before.hash.value);
+  for (TestClient* client : {&asks, &other}) {
+    const auto scene = client->await<protocol::SceneMessage>([](const auto& s) { return s.cause == protocol::SceneCause::loaded; });
+    EXPECT_EQ(scene.name, "room.glb");
+    EXPECT_EQ(scene.hash.value, loaded.hash.value);
+  }
+  fs::remove_all(root);
+}
+
+TEST(Loading, oneAtATimePerClient) {
+  std::atomic<bool> go{false};
+  const fs::path root = fs::temp_directory_path() / ("limn-busy-" + std::to_string(getpid()));
+  fs::create_directories(root);
+  std::ofstream(root / "a.glb") << "glTF";
+  TestService::Options options;
+  options.configure = [&](ServiceConfig& config) {
+    config.assetRoot = root;
+    config.readScene = [&](const fs::path&) -> Result<LoadedScene> {
+      go.wait(false);
+      return LoadedScene{};
+    };
+  };
+  TestService server(options);
+  TestClient client(server.port());
+  client.greet(false);
+  client.send(protocol::Load{10, "a.glb"});
+  client.send(protocol::Load{11, "a.glb"});
+  const auto busy = client.await<protocol::ErrorMessage>();
+  EXPECT_EQ(busy.code, "busy");
+  EXPECT_EQ(busy.seq, 11u);
+  client.send(protocol::Ping{12});
+  client.awaitReply<protocol::Pong>(12);   // the loop does not wait for the file
+  go = true;
+  go.notify_all();
+  client.awaitReply<protocol::Loaded>(10);
+  fs::remove_all(root);
+}
+
+}  // namespace
+}  // namespace limn::server::testing
