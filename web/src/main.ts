@@ -27,6 +27,8 @@ const byId = <T extends HTMLElement>(id: string): T => document.getElementById(i
 const requestFrame = (callback: (now: number) => void): void => void requestAnimationFrame(callback);
 // Requests that are no edits travel under this ticket; nobody waits for their seq.
 const kNoTicket = 0;
+// The browser reads a download after the click; its bytes stay for so long.
+const kDownloadMs = 30_000;
 
 const model = new Model();
 const statistics = new Statistics();
@@ -68,6 +70,7 @@ bindControls(stage.element, {
   reset: () => whenConnected(() => rig.reset()),
   click: pick,
 });
+let homeOf = ''; // name of the scene whose first view the rig remembers
 model.on('scene', adoptScene);
 
 /** The socket stands beside the page, whatever path the server is mounted on. */
@@ -103,7 +106,7 @@ function whenConnected(action: () => void): void {
   }
   ledger.say('Not sent: there is no connection to the server', true);
   announcer.say('Not sent: there is no connection to the server');
-  if (model.scene) model.setScene(model.scene);
+  model.showAgain();
 }
 
 function pick(clientX: number, clientY: number): void {
@@ -119,8 +122,11 @@ function useCamera(index: number): void {
 }
 
 function adoptScene(scene: SceneMessage): void {
-  if (scene.cause === 'loaded') rig.forgetHome();
-  if (!rig.busy() && !desk.cameraPending()) rig.adopt(poseFromView(scene.view), boundsOf(scene));
+  const fresh = scene.cause === 'loaded' || scene.cause === 'joined';
+  if (scene.cause === 'loaded' || scene.name !== homeOf) rig.forgetHome();
+  homeOf = scene.name;
+  // A description that was made before our newest camera edit must not throw the camera back.
+  if (fresh || (!rig.busy() && !desk.cameraPending())) rig.adopt(poseFromView(scene.view), boundsOf(scene));
 }
 
 function onState(state: ConnectionState): void {
@@ -198,7 +204,7 @@ function onFile(header: FrameHeader, bytes: Uint8Array): void {
   anchor.href = url;
   anchor.download = `${(model.scene?.name ?? 'limn').replace(/\.[^.]*$/, '')}.${header.encoding}`;
   anchor.click();
-  URL.revokeObjectURL(url);
+  setTimeout(() => URL.revokeObjectURL(url), kDownloadMs);
 }
 
 function onFault(text: string): void {

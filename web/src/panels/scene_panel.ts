@@ -51,7 +51,7 @@ function selectionOf(key: string): Selection {
   const [kind, index] = splitKey(key);
   switch (kind) {
     case 'node': return { kind: 'node', node: index };
-    case 'material': return { kind: 'material', material: index };
+    case 'glow': case 'material': return { kind: 'material', material: index };
     case 'light': return { kind: 'light', light: index };
     case 'environment': return { kind: 'environment' };
     default: return { kind: 'nothing' };
@@ -82,6 +82,7 @@ function treeOf(scene: SceneMessage): TreeItem[] {
   return [
     ...group('group:lights', 'Lights', [
       ...scene.lights.map((light, i) => leaf(`light:${i}`, nameOf(light.name, 'Light', i), light.type)),
+      ...scene.materials.flatMap((m, i) => (glows(m.emission) ? [leaf(`glow:${i}`, nameOf(m.name, 'Material', i), 'surface')] : [])),
       leaf('environment:0', 'Environment', scene.environment.hasImage ? 'image' : 'constant'),
     ]),
     ...group('group:materials', 'Materials', scene.materials.map((m, i) => leaf(`material:${i}`, nameOf(m.name, 'Material', i), glows(m.emission) ? 'glows' : undefined))),

@@ -7,7 +7,7 @@ import { formatBytes, formatCount, formatError, formatMilliseconds, formatNumber
 import { ErrorPlot } from '../ui/plot';
 
 const kRows = [
-  'Samples per pixel', 'Steps', 'Pixels gathered', 'Estimated error', 'Edit to pixels', 'Frames', 'Received', 'Frames left out',
+  'Samples per pixel', 'Steps', 'Pixels gathered', 'Estimated error', 'Edit to pixels', 'Frames', 'Received', 'Dropped',
   'Frame', 'Rays', 'Discarded samples',
 ] as const;
 type Row = (typeof kRows)[number];
@@ -66,7 +66,7 @@ export class StatsPanel {
       ? `${formatMilliseconds(s.lastLatency())} (p95 ${formatMilliseconds(p95)})` : '–');
     this.set('Frames', `${formatNumber(s.framesPerSecond(at), 3)} /s, ${formatCount(s.presented)} shown`);
     this.set('Received', `${formatBytes(s.bytesPerSecond(at))}/s of ${formatBytes(s.bytes)}`);
-    this.set('Frames left out', `${formatCount(header?.replaced ?? 0)} there, ${formatCount(s.dropped)} here`);
+    this.set('Dropped', `${formatCount(header?.replaced ?? 0)} at the server, ${formatCount(s.dropped)} here`);
     if (!header || !s.last) return;
     const how = header.quality > 0 ? `${header.encoding} q${header.quality}` : header.encoding;
     const divided = header.imageWidth < header.width ? ` from ${header.imageWidth} × ${header.imageHeight}` : '';

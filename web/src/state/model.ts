@@ -28,6 +28,8 @@ export class Model {
   status: Status | null = null;
   connection: ConnectionState = { kind: 'connecting' };
   selection: Selection = { kind: 'nothing' };
+  /** The scene was told on the present connection. */
+  private synchronised = false;
   private listeners: { [K in keyof Events]?: Listener<Events[K]>[] } = {};
 
   on<K extends keyof Events>(event: K, listener: Listener<Events[K]>): void {
@@ -44,6 +46,7 @@ export class Model {
   setScene(scene: SceneMessage): void {
     const other = this.scene?.name !== scene.name || scene.cause === 'loaded';
     this.scene = scene;
+    this.synchronised = true;
     if (other || !selectionExists(scene, this.selection)) this.select({ kind: 'nothing' });
     this.emit('scene', scene);
   }
@@ -55,11 +58,18 @@ export class Model {
 
   setConnection(state: ConnectionState): void {
     this.connection = state;
+    if (state.kind !== 'connected') this.synchronised = false;
     this.emit('connection', state);
   }
 
+  /** True when edits can be sent: connected, and what they refer to is what the server holds. */
   connected(): boolean {
-    return this.connection.kind === 'connected' && this.scene !== null;
+    return this.connection.kind === 'connected' && this.synchronised;
+  }
+
+  /** Lets everybody show the scene as it is known, over what was typed. */
+  showAgain(): void {
+    if (this.scene) this.emit('scene', this.scene);
   }
 
   select(selection: Selection): void {

@@ -54,7 +54,7 @@ export class Connection {
     };
     socket.onmessage = (event) => this.receive(event.data as string | ArrayBuffer);
     socket.onclose = (event) => void this.lost(socket, event, opened);
-    this.wakeTimer = setTimeout(() => { if (!this.greeted) socket.close(); }, kHandshakeMs);
+    this.wakeTimer = setTimeout(() => this.abandon(), kHandshakeMs);
   }
 
   /** Retries at once if it waits to retry. */
@@ -111,10 +111,18 @@ export class Connection {
     this.attempt = 0;
     clearTimeout(this.wakeTimer);
     this.pulseTimer = setInterval(() => {
-      if (nowMs() - this.lastHeardMs > kSilentMs) this.socket?.close();
+      if (nowMs() - this.lastHeardMs > kSilentMs) this.abandon();
       else this.transmit({ op: 'ping' });
     }, kPingMs);
     this.hooks.onState({ kind: 'connected' });
+  }
+
+  /** Gives up a socket that says nothing: its closing handshake would wait for an answer as well. */
+  private abandon(): void {
+    const socket = this.socket;
+    this.forget();
+    socket?.close();
+    this.retryLater('the server fell silent');
   }
 
   private async lost(socket: WebSocket, event: CloseEvent, opened: boolean): Promise<void> {
