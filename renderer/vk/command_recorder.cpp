@@ -48,7 +48,7 @@ struct DescriptorWrites {
     if (binding.image) {
       const VkSampler sampler = binding.kind == BindingKind::sampledImage ? binding.image->sampler() : VK_NULL_HANDLE;
       write.pImageInfo = &images.emplace_back(
-          VkDescriptorImageInfo{sampler, binding.image->view(), VK_IMAGE_LAYOUT_GENERAL});
+          VkDescriptorImageInfo{sampler, binding.image->view(), binding.image->layout()});
     } else if (binding.kind == BindingKind::texel) {
       write.pTexelBufferView = &views.emplace_back(binding.buffer->view());
     } else {

@@ -35,20 +35,23 @@ Result<void> checkLimits(const Device& device, const ImageDesc& desc) {
                             std::to_string(most.maxArrayLayers), ""};
 }
 
-/// From nothing to GENERAL, once after creation.
-void transition(VkCommandBuffer commands, VkImage image, uint32_t layers) {
+/// Orders everything before against everything after and changes the layout. Images are written at loading only, so the
+/// widest barrier is good enough.
+void transition(CommandRecorder& recorder, VkImage image, uint32_t layers, VkImageLayout from, VkImageLayout to) {
+  if (!recorder.handle()) return;
   auto barrier = typed<VkImageMemoryBarrier2>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2);
-  barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
   barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-  barrier.oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
-  barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL;
+  barrier.oldLayout = from;
+  barrier.newLayout = to;
   barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   barrier.image = image;
   barrier.subresourceRange = wholeRange(layers);
   auto info = typed<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
   info.imageMemoryBarrierCount = 1;
   info.pImageMemoryBarriers = &barrier;
-  vkCmdPipelineBarrier2(commands, &info);
+  vkCmdPipelineBarrier2(recorder.handle(), &info);
 }
 
 }  // namespace
@@ -61,6 +64,7 @@ Result<Image> Image::create(Device& device, const ImageDesc& desc) {
   image.m_width = desc.width;
   image.m_height = desc.height;
   image.m_layers = desc.layers;
+  image.m_layout = desc.storage ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   image.m_owner = desc.owner;
   auto info = typed<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
   info.imageType = VK_IMAGE_TYPE_2D;
@@ -80,7 +84,7 @@ Result<Image> Image::create(Device& device, const ImageDesc& desc) {
 
   CommandRecorder recorder(device);
   recorder.begin();
-  if (recorder.handle()) transition(recorder.handle(), image.m_handle, desc.layers);
+  transition(recorder, image.m_handle, desc.layers, VK_IMAGE_LAYOUT_UNDEFINED, image.m_layout);
   if (auto done = submitAndWait(device, recorder); !done) return done.error();
   return image;
 }
@@ -119,6 +123,7 @@ Result<void> Image::createView(const ImageDesc& desc) {
 
 Result<void> Image::uploadLayer(uint32_t layer, std::span<const std::byte> texels) {
   LIMN_CHECK_LE(layer + 1, m_layers);
+  LIMN_CHECK(!texels.empty() && texels.size() % (size_t(m_width) * m_height) == 0);
   BufferDesc desc;
   desc.size = texels.size();
   desc.usage = BufferUsage::none;
@@ -130,12 +135,15 @@ Result<void> Image::uploadLayer(uint32_t layer, std::span<const std::byte> texel
 
   CommandRecorder recorder(*m_device);
   recorder.begin();
+  constexpr VkImageLayout kTarget = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+  transition(recorder, m_handle, m_layers, m_layout, kTarget);
   if (recorder.handle()) {
     VkBufferImageCopy region{};
     region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, layer, 1};
     region.imageExtent = {m_width, m_height, 1};
-    vkCmdCopyBufferToImage(recorder.handle(), staging->handle(), m_handle, VK_IMAGE_LAYOUT_GENERAL, 1, &region);
+    vkCmdCopyBufferToImage(recorder.handle(), staging->handle(), m_handle, kTarget, 1, &region);
   }
+  transition(recorder, m_handle, m_layers, kTarget, m_layout);
   return submitAndWait(*m_device, recorder);
 }
 
@@ -154,6 +162,7 @@ Image& Image::operator=(Image&& other) noexcept {
   m_width = std::exchange(other.m_width, 0);
   m_height = std::exchange(other.m_height, 0);
   m_layers = std::exchange(other.m_layers, 0);
+  m_layout = other.m_layout;
   m_allocatedBytes = std::exchange(other.m_allocatedBytes, 0);
   m_owner = std::move(other.m_owner);
   return *this;

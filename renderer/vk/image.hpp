@@ -19,8 +19,7 @@ struct ImageDesc {
   std::string owner;
 };
 
-/// A 2D array image with its view and sampler, device-local, one mip level, always in VK_IMAGE_LAYOUT_GENERAL.
-/// Render thread.
+/// A 2D array image with its view and sampler, device-local, one mip level. Render thread.
 class Image {
  public:
   /// Errors: "limit", "unsupported" (the format cannot do what is asked), "out-of-memory".
@@ -35,6 +34,8 @@ class Image {
   VkImage handle() const { return m_handle; }
   VkImageView view() const { return m_view; }
   VkSampler sampler() const { return m_sampler; }
+  /// What the image is in between the calls of this layer: GENERAL with ImageDesc::storage, else SHADER_READ_ONLY_OPTIMAL.
+  VkImageLayout layout() const { return m_layout; }
   uint32_t width() const { return m_width; }
   uint32_t height() const { return m_height; }
   uint32_t layers() const { return m_layers; }
@@ -52,6 +53,7 @@ class Image {
   VkImageView m_view = VK_NULL_HANDLE;
   VkSampler m_sampler = VK_NULL_HANDLE;
   uint32_t m_width = 0, m_height = 0, m_layers = 0;
+  VkImageLayout m_layout = VK_IMAGE_LAYOUT_UNDEFINED;
   uint64_t m_allocatedBytes = 0;
   std::string m_owner;
 };

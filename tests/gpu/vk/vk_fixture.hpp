@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,6 +68,8 @@ struct DevicePath {
   bool assumeDiscrete;
   bool pushDescriptors;
 };
+
+inline void PrintTo(const DevicePath& path, std::ostream* out) { *out << path.name; }
 
 inline const std::vector<DevicePath> kDevicePaths{
     {"AsItIs", false, true}, {"Discrete", true, true}, {"DescriptorPools", true, false}};
