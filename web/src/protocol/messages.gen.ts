@@ -14,7 +14,7 @@ export const kMaxJsonDepth = 16;  /** nesting of a text message */
 export const kHelloSeconds = 5;  /** from the handshake to the client's hello [s] */
 export const kAckSeconds = 10;  /** without an acknowledgement while frames are in flight [s] */
 
-export type ErrorCode = "bad-message" | "out-of-range" | "unknown-op" | "unknown-name" | "bad-seq" | "bad-ack" | "hello-first" | "version" | "unauthorized" | "limit" | "busy" | "bad-file" | "unsupported" | "io" | "device" | "device-lost" | "internal";
+export type ErrorCode = "bad-message" | "out-of-range" | "unknown-op" | "unknown-name" | "unknown-technique" | "unknown-parameter" | "bad-seq" | "bad-ack" | "hello-first" | "version" | "unauthorized" | "busy" | "limit" | "bad-file" | "unsupported" | "io" | "path" | "device" | "device-lost" | "internal";
 
 export const kCloseCodes: { [code: number]: string } = { 1000: "after bye", 1001: "the server is draining", 1002: "the WebSocket protocol was broken", 1003: "a binary message came from a client", 1007: "a text message was not UTF-8", 1008: "policy: no hello in time, no token, acknowledgements missing for too long", 1009: "a message was longer than maxControlBytes", 1011: "a fault of the server's own, or a lost device" };
 

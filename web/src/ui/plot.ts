@@ -21,6 +21,7 @@ export function decades(values: readonly number[]): Axis {
 export class ErrorPlot {
   readonly element: HTMLCanvasElement;
   private points: readonly ErrorPoint[] = [];
+  private newest: ErrorPoint | undefined;
   private queued = false;
 
   constructor() {
@@ -29,6 +30,9 @@ export class ErrorPlot {
   }
 
   show(points: readonly ErrorPoint[]): void {
+    const newest = points.at(-1);
+    if (newest === this.newest && points.length > 0) return;
+    this.newest = newest;
     this.points = points.filter((p) => p.seconds > 0 && p.error > 0 && Number.isFinite(p.error));
     const last = this.points.at(-1);
     this.element.setAttribute('aria-label', last
