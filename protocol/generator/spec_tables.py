@@ -1,15 +1,23 @@
 """Fills the tables of spec.md between `<!-- NAME -->` and `<!-- /NAME -->`."""
 
+import json
 import re
+from pathlib import Path
 
 from .schema import header_layout
+
+GOLDEN = Path(__file__).resolve().parent.parent / "golden"
+
+
+def bound(value):
+    return "" if value is None else f"{value:.9g}"
 
 
 def range_text(f):
     low, high = f.raw.get("min"), f.raw.get("max")
     parts = []
     if low is not None or high is not None:
-        parts.append(f"{'' if low is None else low} … {'' if high is None else high}".strip())
+        parts.append(f"{bound(low)} … {bound(high)}".strip())
     if "maxLength" in f.raw:
         parts.append(f"≤ {f.raw['maxLength']} bytes")
     if "maxItems" in f.raw:
@@ -44,11 +52,35 @@ def enums(schema):
     return out
 
 
-def messages(schema, which):
-    out = []
+def wrapped(line, width=118):
+    """One message over several lines, broken after commas that stand outside strings."""
+    pieces = re.findall(r'(?:"(?:[^"\\]|\\.)*"|[^",])*(?:,|$)', line)
+    out = [""]
+    for piece in pieces:
+        if len(out[-1]) + len(piece) > width:
+            out.append("  ")
+        out[-1] += piece
+    return out
+
+
+def examples(side):
+    """The first golden message of each op; of set, of each target."""
+    found = {}
+    for path in sorted(GOLDEN.glob(f"{side}_*.jsonl")):
+        for line in path.read_text(encoding="utf-8").splitlines():
+            message = json.loads(line)
+            found.setdefault(message["op"], {}).setdefault(message.get("target", "") if message["op"] == "set" else "", line)
+    return found
+
+
+def messages(which, side):
+    out, golden = [], examples(side)
     for m in which:
         out += [f"### `{m.op}`", "", m.doc, ""]
-        out += field_rows(m.fields) + [""] if m.fields else []
+        fields = [f for f in m.fields if side == "server" or f.name != "seq"]
+        out += field_rows(fields) + [""] if fields else []
+        lines = [line for example in golden[m.op].values() for line in wrapped(example)]
+        out += ["```json", *lines, "```", ""]
     return out
 
 
@@ -76,8 +108,8 @@ def limits(schema):
 
 
 def fill(schema, text):
-    sections = {"enums": enums(schema), "structs": structs(schema), "client messages": messages(schema, schema.client),
-                "server messages": messages(schema, schema.server), "frame header": header(schema), "frame flags": flags(schema),
+    sections = {"enums": enums(schema), "structs": structs(schema), "client messages": messages(schema.client, "client"),
+                "server messages": messages(schema.server, "server"), "frame header": header(schema), "frame flags": flags(schema),
                 "error codes": codes(schema, "errorCodes"), "close codes": codes(schema, "closeCodes"), "limits": limits(schema)}
     for name, lines in sections.items():
         pattern = re.compile(f"(<!-- {name} -->\n).*?(<!-- /{name} -->)", re.S)
