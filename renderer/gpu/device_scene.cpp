@@ -128,7 +128,9 @@ Result<void> DeviceScene::writeMaterials(const Scene& scene) {
   m_blockAlpha.assign(m_blocks.size(), 0);
   for (size_t i = 0; i < m_blocks.size(); ++i)
     m_blockAlpha[i] = m_blocks[i].material > 0 && needsAlphaTest(scene.materials[m_blocks[i].material - 1]);
-  return replace(m_device, m_materials, describe("materials"), buildMaterialTable(scene));
+  const MaterialTable table = buildMaterialTable(scene);
+  if (auto r = replace(m_device, m_textureSlots, describe("textureSlots"), table.slots); !r) return r;
+  return replace(m_device, m_materials, describe("materials"), table.materials);
 }
 
 Result<void> DeviceScene::writeEnvironment(const Scene& scene) {
@@ -174,7 +176,8 @@ std::vector<vk::Binding> DeviceScene::bindings() const {
           vk::texel(BINDING_TEXELS, m_texels),
           vk::texel(BINDING_ENVIRONMENT, m_environment),
           vk::texel(BINDING_ENVIRONMENT_TABLE, m_environmentTable),
-          vk::storage(BINDING_SCENE_INFO, m_sceneInfo)};
+          vk::storage(BINDING_SCENE_INFO, m_sceneInfo),
+          vk::storage(BINDING_TEXTURE_SLOTS, m_textureSlots)};
 }
 
 }  // namespace limn::gpu

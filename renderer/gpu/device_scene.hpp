@@ -27,7 +27,7 @@ class DeviceScene {
   /// with `everything` succeeds.
   Result<SyncReport> sync(const Scene& scene, const ChangeSet& changes);
 
-  /// Bindings 2-12 of shaders/shared/bindings.h.
+  /// The scene's bindings of shaders/shared/bindings.h, without hierarchy and camera.
   std::vector<vk::Binding> bindings() const;
   const std::vector<GeometryBlock>& blocks() const { return m_blocks; }
   bool blockNeedsAlpha(size_t block) const { return m_blockAlpha[block] != 0; }
@@ -53,7 +53,7 @@ class DeviceScene {
   std::vector<uint8_t> m_blockAlpha;
   LightTable m_lightTable;
   shared::SceneInfo m_info{};
-  vk::Buffer m_triangles, m_positions, m_vertices, m_triangleLights, m_materials, m_lights, m_images, m_texels,
+  vk::Buffer m_triangles, m_positions, m_vertices, m_triangleLights, m_materials, m_textureSlots, m_lights, m_images, m_texels,
       m_environment, m_environmentTable, m_sceneInfo;
 };
 

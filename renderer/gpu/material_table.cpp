@@ -8,20 +8,18 @@
 namespace limn::gpu {
 namespace {
 
+/// Images of a material in the order of their targets (kTarget...).
 std::array<const TextureRef*, 10> slotsOf(const Material& m) {
   return {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture, &m.emissiveTexture,
           &m.transmissionTexture, &m.specularTexture, &m.specularColorTexture, &m.clearcoatTexture,
           &m.clearcoatRoughnessTexture, &m.clearcoatNormalTexture};
 }
 
-bool isTextured(const Material& m) {
-  const auto slots = slotsOf(m);
-  return std::any_of(slots.begin(), slots.end(), [](const TextureRef* slot) { return slot->present(); });
-}
-
-shared::TextureSlot slotData(const TextureRef& ref, bool srgb) {
+shared::TextureSlot slotData(const TextureRef& ref, uint32_t target) {
+  const bool srgb = target == shared::kTargetBaseColor || target == shared::kTargetEmissive || target == shared::kTargetSpecularColor;
   shared::TextureSlot s{};
-  s.image = ref.present() ? uint32_t(ref.image) : shared::kNoIndex;
+  s.image = uint32_t(ref.image);
+  s.target = target;
   s.sampler_ = uint32_t(ref.wrapS) | uint32_t(ref.wrapT) << 2 | (ref.nearest ? shared::kSamplerNearest : 0u) |
                (srgb ? shared::kSamplerSrgb : 0u) | (ref.texCoord == 1 ? shared::kSamplerTexCoord1 : 0u);
   // translation * rotation * scale of KHR_texture_transform
@@ -50,26 +48,26 @@ shared::MaterialData materialData(const Material& m, bool vertexColors) {
   d.specularColor = m.specularColor;
   d.clearcoat = m.clearcoat;
   d.clearcoatRoughness = m.clearcoatRoughness;
-  d.normalScale = m.normalScale;
-  d.clearcoatNormalScale = m.clearcoatNormalScale;
   d.alphaCutoff = m.alphaCutoff;
   d.absorption = absorptionOf(m);
   d.flags = (m.emission != glm::vec3(0.0f) ? shared::kMaterialEmissive : 0u) | (m.unlit ? shared::kMaterialUnlit : 0u) |
             (m.alphaMode == AlphaMode::mask ? shared::kMaterialMask : 0u) |
             (m.alphaMode == AlphaMode::blend ? shared::kMaterialBlend : 0u) |
-            (m.thickness <= 0.0f ? shared::kMaterialThin : 0u) | (isTextured(m) ? shared::kMaterialTextured : 0u) |
-            (vertexColors ? shared::kMaterialVertexColor : 0u);
-  d.baseColorTexture = slotData(m.baseColorTexture, true);
-  d.metallicRoughnessTexture = slotData(m.metallicRoughnessTexture, false);
-  d.normalTexture = slotData(m.normalTexture, false);
-  d.emissiveTexture = slotData(m.emissiveTexture, true);
-  d.transmissionTexture = slotData(m.transmissionTexture, false);
-  d.specularTexture = slotData(m.specularTexture, false);
-  d.specularColorTexture = slotData(m.specularColorTexture, true);
-  d.clearcoatTexture = slotData(m.clearcoatTexture, false);
-  d.clearcoatRoughnessTexture = slotData(m.clearcoatRoughnessTexture, false);
-  d.clearcoatNormalTexture = slotData(m.clearcoatNormalTexture, false);
+            (m.thickness <= 0.0f ? shared::kMaterialThin : 0u) | (vertexColors ? shared::kMaterialVertexColor : 0u);
   return d;
+}
+
+void addMaterial(MaterialTable& table, const Material& m, bool vertexColors) {
+  shared::MaterialData d = materialData(m, vertexColors);
+  d.firstSlot = uint32_t(table.slots.size());
+  const auto refs = slotsOf(m);
+  for (uint32_t target = 0; target < refs.size(); ++target) {
+    if (!refs[target]->present()) continue;
+    table.slots.push_back(slotData(*refs[target], target));
+    table.slots.back().scale = target == shared::kTargetClearcoatNormal ? m.clearcoatNormalScale : m.normalScale;
+  }
+  d.slotCount = uint32_t(table.slots.size()) - d.firstSlot;
+  table.materials.push_back(d);
 }
 
 }  // namespace
@@ -96,13 +94,14 @@ TexelHeap buildTexelHeap(const Scene& scene) {
   return heap;
 }
 
-std::vector<shared::MaterialData> buildMaterialTable(const Scene& scene) {
+MaterialTable buildMaterialTable(const Scene& scene) {
   std::vector<bool> vertexColors(scene.materials.size() + 1, false);
   for (const Mesh& mesh : scene.meshes)
     for (const Primitive& p : mesh.primitives)
       if (!p.colors.empty()) vertexColors[size_t(p.material + 1)] = true;
-  std::vector<shared::MaterialData> table{materialData(Material{}, vertexColors[0])};
-  for (size_t i = 0; i < scene.materials.size(); ++i) table.push_back(materialData(scene.materials[i], vertexColors[i + 1]));
+  MaterialTable table;
+  addMaterial(table, Material{}, vertexColors[0]);
+  for (size_t i = 0; i < scene.materials.size(); ++i) addMaterial(table, scene.materials[i], vertexColors[i + 1]);
   return table;
 }
 

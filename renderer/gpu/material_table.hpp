@@ -14,7 +14,11 @@ struct TexelHeap {
 TexelHeap buildTexelHeap(const Scene& scene);
 
 /// Entry 0 is the default material; material i of the scene is entry i + 1.
-std::vector<shared::MaterialData> buildMaterialTable(const Scene& scene);
+struct MaterialTable {
+  std::vector<shared::MaterialData> materials;
+  std::vector<shared::TextureSlot> slots;
+};
+MaterialTable buildMaterialTable(const Scene& scene);
 
 /// Whether hits on the material must ask for its alpha.
 bool needsAlphaTest(const Material& material);

@@ -14,13 +14,14 @@ class Pass {
  public:
   /// Errors: "device", "out-of-memory".
   static Result<Pass> create(vk::Device& device, const std::string& shader, const std::vector<vk::Binding>& like,
-                             uint32_t pushConstantBytes) {
+                             uint32_t pushConstantBytes, std::vector<uint32_t> specialization = {}) {
     vk::PipelineDesc desc;
     desc.name = shader;
     desc.spirv = embeddedShader(shader);
     LIMN_CHECK(!desc.spirv.empty());
     for (const vk::Binding& binding : like) desc.layout.push_back({binding.binding, binding.kind});
     desc.pushConstantBytes = pushConstantBytes;
+    desc.specialization = std::move(specialization);
     auto pipeline = vk::ComputePipeline::create(device, desc);
     if (!pipeline) return pipeline.error();
     Pass pass;

@@ -135,7 +135,7 @@ TechniqueContext Session::Impl::context() const {
 }
 
 Result<void> Session::Impl::restartFilm(CostClass cost) {
-  if (auto done = technique->prepare(context(), needs); !done) return done;
+  if (auto done = technique->prepare(context(), needs, cost >= CostClass::reload); !done) return done;
   if (auto done = technique->restart(context(), cost); !done) return done;
   if (!pickPass) {
     auto all = gpu::joined(mirror.bindings(), {vk::texel(BINDING_BVH_NODES, bvh.nodes()), vk::texel(BINDING_BVH_TRIANGLES, bvh.triangles()),

@@ -4,6 +4,7 @@
 
 #include "renderer/base/clock.hpp"
 #include "renderer/film/film_statistics.hpp"
+#include "renderer/gpu/needs_constants.hpp"
 #include "renderer/gpu/pass.hpp"
 #include "renderer/techniques/pixel_order.hpp"
 #include "renderer/techniques/work_rate.hpp"
@@ -23,7 +24,7 @@ uint32_t samplesOfPass(uint32_t pass) { return pass < 2 ? 1 : pass < 3 ? 2 : 4; 
 class PathTracing final : public Technique {
  public:
   const TechniqueInfo& info() const override { return pathTracingInfo(); }
-  Result<void> prepare(const TechniqueContext& context, const SceneNeeds& needs) override;
+  Result<void> prepare(const TechniqueContext& context, const SceneNeeds& needs, bool mayCompile) override;
   void setParameter(const std::string& name, double value) override;
   Result<void> restart(const TechniqueContext& context, CostClass changed) override;
   Result<Progress> advance(const TechniqueContext& context, double seconds) override;
@@ -47,8 +48,11 @@ class PathTracing final : public Technique {
   bool m_adaptive = true;
   float m_noiseThreshold = 0.01f;
 
-  gpu::Pass m_opaque, m_alpha;   ///< without and with alpha tests
-  bool m_needsAlpha = false;
+  /// The variant that renders anything, and the one cut to what the scene needs. An edit that adds a need is rendered by
+  /// the first, so that nothing is compiled while somebody waits.
+  gpu::Pass m_general, m_tailored;
+  SceneNeeds m_tailoredNeeds;
+  bool m_useGeneral = false;
   vk::Buffer m_order, m_active, m_counters;
   PixelOrder m_pixelOrder;
   std::optional<FilmStatistics> m_statistics;
@@ -61,23 +65,29 @@ class PathTracing final : public Technique {
   uint64_t m_raysTraced = 0, m_discarded = 0;
 };
 
-Result<void> PathTracing::prepare(const TechniqueContext& context, const SceneNeeds& needs) {
+Result<void> PathTracing::prepare(const TechniqueContext& context, const SceneNeeds& needs, bool mayCompile) {
   describeNeeds(needs);
-  m_needsAlpha = needs.alpha;
   if (m_film != &context.film)
     if (auto made = makeLists(context); !made) return made;
-  if (m_opaque) return {};
+  const bool stale = !m_tailored || (mayCompile && m_tailoredNeeds != needs);
+  m_useGeneral = !stale && !gpu::covers(m_tailoredNeeds, needs);
+  if (!stale) return {};
   const auto like = bindings(context, m_order);
-  auto opaque = gpu::Pass::create(context.device, "path_tracing", like, sizeof(shared::PathTracingPush));
-  if (!opaque) return opaque.error();
-  m_opaque = opaque.take();
-  auto alpha = gpu::Pass::create(context.device, "path_tracing_alpha", like, sizeof(shared::PathTracingPush));
-  if (!alpha) return alpha.error();
-  m_alpha = alpha.take();
-  // Both variants, so that the first transparent material of an edit compiles nothing.
+  const auto make = [&](const SceneNeeds& made) {
+    return gpu::Pass::create(context.device, "path_tracing", like, sizeof(shared::PathTracingPush), gpu::needsConstants(made));
+  };
+  auto tailored = make(needs);
+  if (!tailored) return tailored.error();
+  m_tailored = tailored.take();
+  m_tailoredNeeds = needs;
+  if (!m_general) {
+    auto general = make(gpu::allNeeds());
+    if (!general) return general.error();
+    m_general = general.take();
+  }
   return gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
-    m_opaque.warmUp(r, like);
-    m_alpha.warmUp(r, like);
+    m_tailored.warmUp(r, like);
+    m_general.warmUp(r, like);
   });
 }
 
@@ -162,7 +172,7 @@ Result<void> PathTracing::dispatch(const TechniqueContext& context, uint32_t cou
   const auto all = bindings(context, adaptive ? m_active : m_order);
   const double begin = nowSeconds();
   auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
-    (m_needsAlpha ? m_alpha : m_opaque).record(r, all, push, (count + kWorkgroup - 1) / kWorkgroup);
+    (m_useGeneral ? m_general : m_tailored).record(r, all, push, (count + kWorkgroup - 1) / kWorkgroup);
   });
   if (!done) return done;
   m_rate.measured(uint64_t(count) * m_passSamples, nowSeconds() - begin);

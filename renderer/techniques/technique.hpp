@@ -42,8 +42,9 @@ class Technique {
   virtual ~Technique() = default;
   virtual const TechniqueInfo& info() const = 0;
 
-  /// Pipelines for what the scene needs, compiled and warm. Called when the scene's needs or buffers changed.
-  virtual Result<void> prepare(const TechniqueContext& context, const SceneNeeds& needs) = 0;
+  /// Pipelines for what the scene needs, compiled and warm. Called before every restart; pipelines are made the first time and
+  /// where `mayCompile` says that a stop is no matter, as when a scene was loaded.
+  virtual Result<void> prepare(const TechniqueContext& context, const SceneNeeds& needs, bool mayCompile) = 0;
   /// Values within the announced range. The caller restarts what ParameterInfo::cost says.
   virtual void setParameter(const std::string& name, double value) = 0;
   /// Forgets the picture; the next quantum begins pass 0. `changed` says what died, dearest first.

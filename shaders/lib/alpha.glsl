@@ -5,6 +5,7 @@
 #include "shaders/lib/surface.glsl"
 
 bool alphaAccepts(uint triangle, vec2 barycentrics, inout uint state) {
+  if (!kUseAlpha) return true;
   float alpha = surfaceAlpha(triangle, barycentrics);
   // Keyed by the triangle, so that the order in which the hierarchy meets the hits does not matter.
   return toUnit(hashCombine(state, triangle)) < alpha;

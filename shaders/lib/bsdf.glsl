@@ -37,12 +37,14 @@ vec3 dielectricFresnel(Bsdf f, float cosH) {
   return f.dielectricF0 + (f.dielectricF90 - f.dielectricF0) * schlickWeight(cosH);
 }
 vec3 metalFresnel(Bsdf f, float cosH) { return f.s.baseColor + (1.0 - f.s.baseColor) * schlickWeight(cosH); }
-vec3 reflectionFresnel(Bsdf f, float cosH) { return mix(dielectricFresnel(f, cosH), metalFresnel(f, cosH), f.s.metallic); }
+vec3 reflectionFresnel(Bsdf f, float cosH) {
+  return mix(dielectricFresnel(f, cosH), metalFresnel(f, cosH), f.s.metallic);
+}
 float clearcoatFresnel(float cosH) { return 0.04 + 0.96 * schlickWeight(cosH); }
 
 // What the coat leaves to the layers below, seen from the viewer. [KHR_materials_clearcoat]
 float underClearcoat(Bsdf f, vec3 woW) {
-  return 1.0 - f.s.clearcoat * clearcoatFresnel(abs(dot(f.s.clearcoatNormal, woW)));
+  return kUseClearcoat ? 1.0 - f.s.clearcoat * clearcoatFresnel(abs(dot(f.s.clearcoatNormal, woW))) : 1.0;
 }
 
 Bsdf makeBsdf(Surface s, vec3 woW) {
@@ -51,7 +53,7 @@ Bsdf makeBsdf(Surface s, vec3 woW) {
   makeFrame(s.normal, f.t, f.b);
   f.woL = toLocal(f, woW);
   f.thin = (s.flags & kMaterialThin) != 0u;
-  f.exactFresnel = s.transmission > 0.0;
+  f.exactFresnel = kUseTransmission && s.transmission > 0.0;
   f.eta = f.thin || s.frontFace ? s.ior : 1.0 / s.ior;
   float r0 = square((s.ior - 1.0) / (s.ior + 1.0));
   f.dielectricF0 = min(r0 * s.specularColor, vec3(1.0)) * s.specular;
@@ -60,10 +62,10 @@ Bsdf makeBsdf(Surface s, vec3 woW) {
   if (f.exactFresnel && !f.thin && abs(s.ior - 1.0) < 1e-3) f.s.alpha = 0.0;
 
   float cosO = max(f.woL.z, 0.0);
-  float reflectance = luminance(reflectionFresnel(f, cosO));
+  float reflectance = kUseSpecular ? luminance(reflectionFresnel(f, cosO)) : 0.0;
   float body = (1.0 - s.metallic) * (1.0 - maxComponent(dielectricFresnel(f, cosO)));
   float albedo = luminance(s.baseColor);
-  float coat = s.clearcoat * clearcoatFresnel(abs(dot(s.clearcoatNormal, woW)));
+  float coat = kUseClearcoat ? s.clearcoat * clearcoatFresnel(abs(dot(s.clearcoatNormal, woW))) : 0.0;
   LobeShares w;
   w.diffuse = body * (1.0 - s.transmission) * albedo;
   w.transmission = body * s.transmission * max(albedo, 0.05);
@@ -82,7 +84,7 @@ bool isMirror(float alpha) { return alpha <= kMinAlpha; }
 // Value * |cos| of the clearcoat alone, and its pdf.
 float evaluateClearcoat(Bsdf f, vec3 woW, vec3 wiW, out float pdf) {
   pdf = 0.0;
-  if (f.s.clearcoat <= 0.0 || isMirror(f.s.clearcoatAlpha)) return 0.0;
+  if (!kUseClearcoat || f.s.clearcoat <= 0.0 || isMirror(f.s.clearcoatAlpha)) return 0.0;
   vec3 t, b;
   makeFrame(f.s.clearcoatNormal, t, b);
   vec3 wo = vec3(dot(woW, t), dot(woW, b), dot(woW, f.s.clearcoatNormal));
@@ -108,7 +110,7 @@ vec3 evaluateBsdf(Bsdf f, vec3 woW, vec3 wiW, out float pdf) {
     float body = (1.0 - f.s.metallic) * (1.0 - f.s.transmission) * (1.0 - maxComponent(dielectricFresnel(f, cosH)));
     value = f.s.baseColor * (body * kInvPi * wi.z);
     pdf = f.shares.diffuse * wi.z * kInvPi;
-    if (!isMirror(alpha) && f.shares.reflection > 0.0) {
+    if (kUseSpecular && !isMirror(alpha) && f.shares.reflection > 0.0) {
       value += reflectionFresnel(f, cosH) * (ggxD(h, alpha) * ggxG2(wo, wi, alpha) / (4.0 * wo.z));
       pdf += f.shares.reflection * visibleNormalPdf(wo, h, alpha) / (4.0 * max(cosH, 1e-7));
     }
@@ -117,7 +119,7 @@ vec3 evaluateBsdf(Bsdf f, vec3 woW, vec3 wiW, out float pdf) {
     pdf += f.shares.clearcoat * coatPdf;
     return value * underClearcoat(f, woW) + coat;
   }
-  if (f.shares.transmission <= 0.0 || isMirror(alpha) || wi.z >= 0.0) return vec3(0.0);
+  if (!kUseTransmission || f.shares.transmission <= 0.0 || isMirror(alpha) || wi.z >= 0.0) return vec3(0.0);
   float weight = (1.0 - f.s.metallic) * f.s.transmission;
   if (f.thin) {  // the reflection lobe turned over: what enters one face leaves the other undeviated but rough
     vec3 mirrored = vec3(wi.xy, -wi.z);
@@ -180,18 +182,18 @@ BsdfSample sampleBsdf(Bsdf f, vec3 woW, float uLobe, vec2 u) {
   vec3 dirW;
   if (uLobe < f.shares.diffuse) {
     dirW = toWorld(f, sampleCosineHemisphere(u));
-  } else if (uLobe < f.shares.diffuse + f.shares.reflection) {
+  } else if (kUseSpecular && uLobe < f.shares.diffuse + f.shares.reflection) {
     vec3 h = mirror ? vec3(0.0, 0.0, 1.0) : sampleVisibleNormal(wo, f.s.alpha, u);
     vec3 wi = 2.0 * dot(wo, h) * h - wo;
     dirW = toWorld(f, wi);
     if (wi.z <= 0.0 || dot(f.s.geometricNormal, dirW) <= 0.0) return kNoSample;
     if (mirror)
       return mirrorSample(f, woW, dirW, reflectionFresnel(f, wo.z) * (underClearcoat(f, woW) / f.shares.reflection), false);
-  } else if (uLobe < f.shares.diffuse + f.shares.reflection + f.shares.transmission) {
+  } else if (kUseTransmission && uLobe < f.shares.diffuse + f.shares.reflection + f.shares.transmission) {
     vec3 h = mirror ? vec3(0.0, 0.0, 1.0) : sampleVisibleNormal(wo, f.s.alpha, u);
     BsdfSample delta = sampleTransmission(f, woW, h, mirror, dirW);
     if (mirror || dirW == vec3(0.0)) return delta;
-  } else {
+  } else if (kUseClearcoat) {
     vec3 n = f.s.clearcoatNormal;
     if (isMirror(f.s.clearcoatAlpha)) {
       float cosO = dot(n, woW);
@@ -206,6 +208,8 @@ BsdfSample sampleBsdf(Bsdf f, vec3 woW, float uLobe, vec2 u) {
     vec3 wi = 2.0 * dot(local, h) * h - local;
     if (wi.z <= 0.0) return kNoSample;
     dirW = t * wi.x + b * wi.y + n * wi.z;
+  } else {
+    return kNoSample;
   }
   BsdfSample result = kNoSample;
   result.dirW = normalize(dirW);

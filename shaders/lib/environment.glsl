@@ -20,7 +20,7 @@ vec3 environmentTexel(int x, int y) {
 }
 
 vec3 environmentRadiance(vec3 dirW) {
-  if (sceneInfo.environmentWidth == 0u) return sceneInfo.environmentRadiance;
+  if (!kUseEnvironmentImage || sceneInfo.environmentWidth == 0u) return sceneInfo.environmentRadiance;
   vec2 st = environmentUv(dirW) * vec2(sceneInfo.environmentWidth, sceneInfo.environmentHeight) - 0.5;
   vec2 base = floor(st), f = st - base;
   ivec2 p = ivec2(base);
@@ -37,7 +37,7 @@ float cellPdf(uint cell) {
 
 // Per unit solid angle.
 float environmentPdf(vec3 dirW) {
-  if (sceneInfo.distributionWidth == 0u) return 0.25 * kInvPi;
+  if (!kUseEnvironmentImage || sceneInfo.distributionWidth == 0u) return 0.25 * kInvPi;
   float u = environmentUv(dirW).x, v = 0.5 - 0.5 * clamp(dirW.y, -1.0, 1.0);
   uint x = min(uint(u * float(sceneInfo.distributionWidth)), sceneInfo.distributionWidth - 1u);
   uint y = min(uint(v * float(sceneInfo.distributionHeight)), sceneInfo.distributionHeight - 1u);
@@ -45,7 +45,7 @@ float environmentPdf(vec3 dirW) {
 }
 
 vec3 sampleEnvironment(vec2 u, out float pdf) {
-  if (sceneInfo.distributionWidth == 0u) {
+  if (!kUseEnvironmentImage || sceneInfo.distributionWidth == 0u) {
     pdf = 0.25 * kInvPi;
     return sampleSphere(u);
   }

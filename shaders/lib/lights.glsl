@@ -30,10 +30,14 @@ float rangeWindow(LightData light, float d) {
 
 vec3 triangleEmission(uint triangle, vec2 barycentrics) {
   uvec4 t = texelFetch(triangles, int(triangle));
-  MaterialData m = materials[t.w];
-  if (m.emissiveTexture.image == kNoIndex) return m.emission;
-  Attributes a = interpolate(t.xyz, vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics), true);
-  return m.emission * sampleTexture(m.emissiveTexture, a.uv0, a.uv1).rgb;
+  vec3 emission = materials[t.w].emission;
+  if (!kUseTextures) return emission;
+  Attributes a = interpolate(t.xyz, vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics));
+  uint first = materials[t.w].firstSlot, count = materials[t.w].slotCount;
+  for (uint i = 0u; i < count; ++i)
+    if (textureSlots[first + i].target == kTargetEmissive)
+      emission *= sampleTexture(textureSlots[first + i], a.uv0, a.uv1).rgb;
+  return emission;
 }
 
 // pdf of light sampling for the point of triangle light `light` at distance d, seen under |cos| at the light.
@@ -64,14 +68,15 @@ LightSample sampleLight(vec3 p, float uLight, vec2 u) {
   LightSample s = LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0);
   if (sceneInfo.lightCount == 0u) return s;
   LightData light = lights[chooseLight(uLight)];
-  if (light.type == kLightTriangle) return sampleTriangleLight(light, p, u);
-  if (light.type == kLightEnvironment) {
+  if (kUseTriangleLights && light.type == kLightTriangle) return sampleTriangleLight(light, p, u);
+  if (kUseEnvironment && light.type == kLightEnvironment) {
     s.dirW = sampleEnvironment(u, s.pdf);
     s.pdf *= light.probability;
     s.distance = kInfinity;
     s.radiance = s.pdf > 0.0 ? environmentRadiance(s.dirW) / s.pdf : vec3(0.0);
     return s;
   }
+  if (!kUsePunctualLights) return s;
   if (light.type == kLightDirectional) {
     s.dirW = -light.dirR;
     s.distance = kInfinity;

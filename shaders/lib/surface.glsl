@@ -32,16 +32,18 @@ struct Attributes {
   vec4 color;
 };
 
-Attributes interpolate(uvec3 corner, vec3 weights, bool second) {
-  Attributes a = Attributes(vec3(0.0), vec4(0.0), vec2(0.0), vec2(0.0), second ? vec4(0.0) : vec4(1.0));
+Attributes interpolate(uvec3 corner, vec3 weights) {
+  Attributes a = Attributes(vec3(0.0), vec4(0.0), vec2(0.0), vec2(0.0), vec4(0.0));
   for (int i = 0; i < 3; ++i) {
     float w = i == 0 ? weights.x : i == 1 ? weights.y : weights.z;
     int v = int(i == 0 ? corner.x : i == 1 ? corner.y : corner.z) * 2;
     uvec4 p = texelFetch(vertices, v);
     a.normal += w * octDecode(p.x);
-    a.tangent += w * vec4(octDecode(p.y & ~1u), (p.y & 1u) != 0u ? -1.0 : 1.0);
-    a.uv0 += w * uintBitsToFloat(p.zw);
-    if (second) {
+    if (kUseTextures) {
+      a.tangent += w * vec4(octDecode(p.y & ~1u), (p.y & 1u) != 0u ? -1.0 : 1.0);
+      a.uv0 += w * uintBitsToFloat(p.zw);
+    }
+    if (kUseTextures || kUseVertexColors) {
       uvec4 q = texelFetch(vertices, v + 1);
       a.uv1 += w * uintBitsToFloat(q.xy);
       a.color += w * vec4(unpackHalf2x16(q.z), unpackHalf2x16(q.w));
@@ -64,7 +66,7 @@ vec3 applyNormalMap(vec3 texel, float scale, vec3 n, vec4 tangent) {
 }
 
 // A shading normal seen from behind would reflect into the surface; it is bent until the viewer grazes it.
-vec3 towardsViewer(vec3 n, vec3 geometricNormal, vec3 viewDir) {
+vec3 towardsViewer(vec3 n, vec3 viewDir) {
   const float kGrazing = 1e-3;
   float c = dot(n, viewDir);
   if (c >= kGrazing) return n;
@@ -73,12 +75,40 @@ vec3 towardsViewer(vec3 n, vec3 geometricNormal, vec3 viewDir) {
 
 float surfaceAlpha(uint triangle, vec2 barycentrics) {
   uvec4 t = texelFetch(triangles, int(triangle));
-  MaterialData m = materials[t.w];
   vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
-  Attributes a = interpolate(t.xyz, weights, true);
-  float alpha = m.baseColor.a * sampleTexture(m.baseColorTexture, a.uv0, a.uv1).a;
-  if ((m.flags & kMaterialVertexColor) != 0u) alpha *= a.color.a;
-  return (m.flags & kMaterialMask) != 0u ? (alpha >= m.alphaCutoff ? 1.0 : 0.0) : alpha;
+  Attributes a = interpolate(t.xyz, weights);
+  float alpha = materials[t.w].baseColor.a;
+  uint flags = materials[t.w].flags, first = materials[t.w].firstSlot;
+  // The base colour's slot is the first where there is one.
+  if (kUseTextures && materials[t.w].slotCount > 0u && textureSlots[first].target == kTargetBaseColor)
+    alpha *= sampleTexture(textureSlots[first], a.uv0, a.uv1).a;
+  if (kUseVertexColors && (flags & kMaterialVertexColor) != 0u) alpha *= a.color.a;
+  return (flags & kMaterialMask) != 0u ? (alpha >= materials[t.w].alphaCutoff ? 1.0 : 0.0) : alpha;
+}
+
+struct MappedNormals { vec3 base, clearcoat; };
+
+// Scales the parameters by the material's textures, one turn of the loop an image.
+void applyTextures(inout Surface s, inout float roughness, inout float clearcoatRoughness, inout MappedNormals normals, Attributes a) {
+  uint first = materials[s.material].firstSlot, count = materials[s.material].slotCount;
+  vec3 n = normals.base;
+  for (uint i = 0u; i < count; ++i) {
+    TextureSlot slot = textureSlots[first + i];
+    vec4 v = sampleTexture(slot, a.uv0, a.uv1);
+    uint target = slot.target;
+    s.baseColor *= target == kTargetBaseColor ? v.rgb : vec3(1.0);
+    s.metallic *= target == kTargetMetallicRoughness ? v.b : 1.0;
+    roughness *= target == kTargetMetallicRoughness ? v.g : 1.0;
+    s.emission *= target == kTargetEmissive ? v.rgb : vec3(1.0);
+    s.transmission *= target == kTargetTransmission ? v.r : 1.0;
+    s.specular *= target == kTargetSpecular ? v.a : 1.0;
+    s.specularColor *= target == kTargetSpecularColor ? v.rgb : vec3(1.0);
+    s.clearcoat *= target == kTargetClearcoat ? v.r : 1.0;
+    clearcoatRoughness *= target == kTargetClearcoatRoughness ? v.g : 1.0;
+    vec3 mapped = applyNormalMap(v.xyz, slot.scale, n, a.tangent);
+    normals.base = target == kTargetNormal ? mapped : normals.base;
+    normals.clearcoat = target == kTargetClearcoatNormal ? mapped : normals.clearcoat;
+  }
 }
 
 Surface makeSurface(uint triangle, vec2 barycentrics, vec3 viewDir) {
@@ -94,53 +124,32 @@ Surface makeSurface(uint triangle, vec2 barycentrics, vec3 viewDir) {
   s.geometricNormal = normalize(cross(edge1 / scale, edge2 / scale));
   s.frontFace = dot(s.geometricNormal, viewDir) >= 0.0;
 
-  MaterialData m = materials[t.w];
   s.material = t.w;
-  s.flags = m.flags;
-  bool second = (m.flags & (kMaterialTextured | kMaterialVertexColor)) != 0u;
-  Attributes a = interpolate(t.xyz, weights, second);
+  s.flags = materials[t.w].flags;
+  Attributes a = interpolate(t.xyz, weights);
   float normalLength = length(a.normal);
   vec3 n = normalLength > 1e-6 ? a.normal / normalLength : s.geometricNormal;
   // Winding decides the side; mirrored nodes and odd files may hold normals that disagree with it.
   if (dot(n, s.geometricNormal) < 0.0) n = -n;
 
-  s.baseColor = m.baseColor.rgb;
-  s.metallic = m.metallic;
-  float roughness = m.roughness;
-  s.emission = m.emission;
-  s.transmission = m.transmission;
-  s.ior = m.ior;
-  s.specular = m.specular;
-  s.specularColor = m.specularColor;
-  s.clearcoat = m.clearcoat;
-  float clearcoatRoughness = m.clearcoatRoughness;
-  s.clearcoatNormal = n;
-  if ((m.flags & kMaterialVertexColor) != 0u) s.baseColor *= a.color.rgb;
-  if ((m.flags & kMaterialTextured) != 0u) {
-    s.baseColor *= sampleTexture(m.baseColorTexture, a.uv0, a.uv1).rgb;
-    vec4 metallicRoughness = sampleTexture(m.metallicRoughnessTexture, a.uv0, a.uv1);
-    s.metallic *= metallicRoughness.b;
-    roughness *= metallicRoughness.g;
-    s.emission *= sampleTexture(m.emissiveTexture, a.uv0, a.uv1).rgb;
-    s.transmission *= sampleTexture(m.transmissionTexture, a.uv0, a.uv1).r;
-    s.specular *= sampleTexture(m.specularTexture, a.uv0, a.uv1).a;
-    s.specularColor *= sampleTexture(m.specularColorTexture, a.uv0, a.uv1).rgb;
-    s.clearcoat *= sampleTexture(m.clearcoatTexture, a.uv0, a.uv1).r;
-    clearcoatRoughness *= sampleTexture(m.clearcoatRoughnessTexture, a.uv0, a.uv1).g;
-    if (m.clearcoatNormalTexture.image != kNoIndex)
-      s.clearcoatNormal = applyNormalMap(sampleTexture(m.clearcoatNormalTexture, a.uv0, a.uv1).xyz, m.clearcoatNormalScale, n, a.tangent);
-    if (m.normalTexture.image != kNoIndex)
-      n = applyNormalMap(sampleTexture(m.normalTexture, a.uv0, a.uv1).xyz, m.normalScale, n, a.tangent);
-  }
+  s.baseColor = materials[t.w].baseColor.rgb;
+  s.metallic = materials[t.w].metallic;
+  s.emission = materials[t.w].emission;
+  s.transmission = kUseTransmission ? materials[t.w].transmission : 0.0;
+  s.ior = materials[t.w].ior;
+  s.specular = materials[t.w].specular;
+  s.specularColor = materials[t.w].specularColor;
+  s.clearcoat = kUseClearcoat ? materials[t.w].clearcoat : 0.0;
+  float roughness = materials[t.w].roughness, clearcoatRoughness = materials[t.w].clearcoatRoughness;
+  if (kUseVertexColors && (s.flags & kMaterialVertexColor) != 0u) s.baseColor *= a.color.rgb;
+  MappedNormals normals = MappedNormals(n, n);
+  if (kUseTextures) applyTextures(s, roughness, clearcoatRoughness, normals, a);
   s.alpha = roughness * roughness;
   s.clearcoatAlpha = clearcoatRoughness * clearcoatRoughness;
-  if (!s.frontFace) {
-    s.geometricNormal = -s.geometricNormal;
-    n = -n;
-    s.clearcoatNormal = -s.clearcoatNormal;
-  }
-  s.normal = towardsViewer(n, s.geometricNormal, viewDir);
-  s.clearcoatNormal = towardsViewer(s.clearcoatNormal, s.geometricNormal, viewDir);
+  float side = s.frontFace ? 1.0 : -1.0;
+  s.geometricNormal *= side;
+  s.normal = towardsViewer(normals.base * side, viewDir);
+  s.clearcoatNormal = kUseClearcoat ? towardsViewer(normals.clearcoat * side, viewDir) : s.normal;
   return s;
 }
 

@@ -21,25 +21,23 @@ vec4 fetchTexel(ImageInfo image, int x, int y, uint sampler_) {
   return (sampler_ & kSamplerSrgb) != 0u ? vec4(srgbToLinear(c.rgb), c.a) : c;
 }
 
-// Filtered texel at the slot's transform of (uv0 | uv1). White when the slot is empty.
+// Filtered texel at the slot's transform of (uv0 | uv1).
 vec4 sampleTexture(TextureSlot slot, vec2 uv0, vec2 uv1) {
-  if (slot.image == kNoIndex) return vec4(1.0);
   vec3 uv = vec3((slot.sampler_ & kSamplerTexCoord1) != 0u ? uv1 : uv0, 1.0);
   ImageInfo image = images[slot.image];
-  vec2 size = vec2(image.width, image.height);
-  // Coordinates a float cannot resolve to a texel have no answer; the fraction keeps the rest exact.
-  vec2 st = vec2(dot(slot.rowU, uv), dot(slot.rowV, uv));
-  st = clamp(st, vec2(-32768.0), vec2(32768.0)) * size;
-  if ((slot.sampler_ & kSamplerNearest) != 0u) {
-    ivec2 p = ivec2(floor(st));
-    return fetchTexel(image, p.x, p.y, slot.sampler_);
-  }
-  st -= 0.5;
-  vec2 base = floor(st), f = st - base;
+  // Coordinates so large that a float cannot resolve a texel have no right answer.
+  vec2 st = clamp(vec2(dot(slot.rowU, uv), dot(slot.rowV, uv)), vec2(-32768.0), vec2(32768.0)) * vec2(image.width, image.height);
+  bool nearest = (slot.sampler_ & kSamplerNearest) != 0u;
+  st -= nearest ? 0.0 : 0.5;
+  vec2 base = floor(st), f = nearest ? vec2(0.0) : st - base;
   ivec2 p = ivec2(base);
-  vec4 a = mix(fetchTexel(image, p.x, p.y, slot.sampler_), fetchTexel(image, p.x + 1, p.y, slot.sampler_), f.x);
-  vec4 b = mix(fetchTexel(image, p.x, p.y + 1, slot.sampler_), fetchTexel(image, p.x + 1, p.y + 1, slot.sampler_), f.x);
-  return mix(a, b, f.y);
+  vec4 sum = vec4(0.0);
+  for (int k = 0; k < 4; ++k) {
+    int dx = k & 1, dy = k >> 1;
+    float w = (dx == 1 ? f.x : 1.0 - f.x) * (dy == 1 ? f.y : 1.0 - f.y);
+    sum += w * fetchTexel(image, p.x + dx, p.y + dy, slot.sampler_);
+  }
+  return sum;
 }
 
 #endif

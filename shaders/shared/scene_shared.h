@@ -15,13 +15,28 @@ LIMN_CONST_UINT(kSamplerNearest, 1u << 4);
 LIMN_CONST_UINT(kSamplerSrgb, 1u << 5);      // texels are sRGB-encoded
 LIMN_CONST_UINT(kSamplerTexCoord1, 1u << 6);
 
+// What a texture slot scales. TextureSlot.target
+LIMN_CONST_UINT(kTargetBaseColor, 0u);
+LIMN_CONST_UINT(kTargetMetallicRoughness, 1u);
+LIMN_CONST_UINT(kTargetNormal, 2u);
+LIMN_CONST_UINT(kTargetEmissive, 3u);
+LIMN_CONST_UINT(kTargetTransmission, 4u);
+LIMN_CONST_UINT(kTargetSpecular, 5u);
+LIMN_CONST_UINT(kTargetSpecularColor, 6u);
+LIMN_CONST_UINT(kTargetClearcoat, 7u);
+LIMN_CONST_UINT(kTargetClearcoatRoughness, 8u);
+LIMN_CONST_UINT(kTargetClearcoatNormal, 9u);
+
+// One image of one material, in the order of targets; a material's slots follow each other.
 struct TextureSlot {
-  uint image;      // index into images, kNoIndex when absent
+  uint image;      // index into images
   uint sampler_;   // kSampler... bits
   vec3 rowU;       // u' = dot(rowU, (u, v, 1))
   vec3 rowV;       // v' = dot(rowV, (u, v, 1))
+  uint target;     // kTarget...
+  float scale;     // of a normal map's x and y
 };
-LIMN_ASSERT_SIZE(TextureSlot, 32);
+LIMN_ASSERT_SIZE(TextureSlot, 40);
 
 struct ImageInfo {
   uint firstTexel; // in the texel heap
@@ -37,8 +52,7 @@ LIMN_CONST_UINT(kMaterialUnlit, 1u << 1);
 LIMN_CONST_UINT(kMaterialMask, 1u << 2);
 LIMN_CONST_UINT(kMaterialBlend, 1u << 3);
 LIMN_CONST_UINT(kMaterialThin, 1u << 4);     // transmits without bounding a volume
-LIMN_CONST_UINT(kMaterialTextured, 1u << 5); // any slot is present
-LIMN_CONST_UINT(kMaterialVertexColor, 1u << 6);
+LIMN_CONST_UINT(kMaterialVertexColor, 1u << 5);
 
 struct MaterialData {
   vec4 baseColor;            // linear Rec. 709, alpha
@@ -51,23 +65,13 @@ struct MaterialData {
   vec3 specularColor;        // linear
   float clearcoat;           // 0..1
   float clearcoatRoughness;  // 0..1
-  float normalScale;
-  float clearcoatNormalScale;
   float alphaCutoff;         // 0..1
   vec3 absorption;           // [1/m], of the volume behind the surface
   uint flags;                // kMaterial... bits
-  TextureSlot baseColorTexture;
-  TextureSlot metallicRoughnessTexture;
-  TextureSlot normalTexture;
-  TextureSlot emissiveTexture;
-  TextureSlot transmissionTexture;
-  TextureSlot specularTexture;
-  TextureSlot specularColorTexture;
-  TextureSlot clearcoatTexture;
-  TextureSlot clearcoatRoughnessTexture;
-  TextureSlot clearcoatNormalTexture;
+  uint firstSlot;            // of its texture slots
+  uint slotCount;
 };
-LIMN_ASSERT_SIZE(MaterialData, 416);
+LIMN_ASSERT_SIZE(MaterialData, 96);
 
 LIMN_CONST_UINT(kLightPoint, 0u);
 LIMN_CONST_UINT(kLightSpot, 1u);

@@ -1,6 +1,6 @@
 // Unidirectional path tracing with next-event estimation and multiple importance sampling [Veach 1997]: the judge of the rest.
 // One invocation takes `sampleCount` samples of one pixel, starting the next path as soon as one ends, so that lanes of a
-// vector stay busy. Variants: LIMN_ALPHA (hits ask for their alpha).
+// vector stay busy.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -10,9 +10,8 @@
 #include "shaders/lib/bsdf.glsl"
 #include "shaders/lib/lights.glsl"
 #include "shaders/lib/camera.glsl"
-#ifdef LIMN_ALPHA
 #include "shaders/lib/alpha.glsl"
-#endif
+#define LIMN_ALPHA
 #include "shaders/lib/trace.glsl"
 
 layout(local_size_x = 64) in;
@@ -52,7 +51,7 @@ void addRadiance(inout Path p, vec3 radiance, uint scatterings) {
 }
 
 void addEnvironment(inout Path p) {
-  if (sceneInfo.environmentLight == kNoIndex) return;
+  if (!kUseEnvironment || sceneInfo.environmentLight == kNoIndex) return;
   float weight = 1.0;
   if (p.bsdfPdf > 0.0)
     weight = powerHeuristic(p.bsdfPdf, lights[sceneInfo.environmentLight].probability * environmentPdf(p.dirR));
@@ -99,7 +98,7 @@ bool advance(inout Path p) {
   }
   vec3 woW = -p.dirR;
   Surface s = makeSurface(hit.triangle, hit.barycentrics, woW);
-  if (p.absorption != vec3(0.0)) p.throughput *= exp(-p.absorption * hit.t);
+  if (kUseTransmission && p.absorption != vec3(0.0)) p.throughput *= exp(-p.absorption * hit.t);
   if (p.bounce == 0u) {
     p.result.albedo = s.baseColor;
     p.result.normal = s.normal;
@@ -110,7 +109,7 @@ bool advance(inout Path p) {
     addRadiance(p, p.throughput * s.baseColor, p.bounce);
     return false;
   }
-  if ((s.flags & kMaterialEmissive) != 0u) addEmission(p, s, hit);
+  if (kUseTriangleLights && (s.flags & kMaterialEmissive) != 0u) addEmission(p, s, hit);
   if (p.bounce > push.maxBounces) return false;
 
   Bsdf bsdf = makeBsdf(s, woW);
@@ -121,7 +120,7 @@ bool advance(inout Path p) {
 
   p.throughput *= next.weight;
   p.bsdfPdf = next.mirror ? 0.0 : next.pdf;
-  if (next.transmitted && !bsdf.thin) {
+  if (kUseTransmission && next.transmitted && !bsdf.thin) {
     p.absorption = s.frontFace ? materials[s.material].absorption : vec3(0.0);
     p.etaScale *= bsdf.eta * bsdf.eta;
   }
