@@ -1,5 +1,6 @@
 #include "renderer/visibility/bvh.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <numeric>
 
@@ -12,22 +13,39 @@ namespace {
 
 using namespace shared;
 
-constexpr uint32_t kMaxLeafTriangles = 4;
+// Nodes that a block's tree may be high, so that some levels are left for the top; 3 * 4^12 triangles fit even then.
+constexpr uint32_t kBlockHeight = 12;
+
+// Triangles without an area have no normal and cannot be hit. Differences and products of floats are exact enough in double
+// for this to find all that lie on a line.
+bool isDegenerate(const glm::vec3* c) {
+  const glm::dvec3 normal = glm::cross(glm::dvec3(c[1]) - glm::dvec3(c[0]), glm::dvec3(c[2]) - glm::dvec3(c[0]));
+  return normal == glm::dvec3(0.0);
+}
 
 glm::vec4 withWord(const glm::vec3& v, uint32_t word) { return {v, std::bit_cast<float>(word)}; }
 
 BvhBlock buildBlock(const BvhBuilder& builder, const TriangleBlock& source) {
-  const size_t count = source.corners.size() / 3;
-  std::vector<Box> boxes(count);
-  for (size_t i = 0; i < 3 * count; ++i) boxes[i / 3].add(source.corners[i]);
-
+  LIMN_CHECK_EQ(source.corners.size() % 3, 0u);
   BvhBlock block;
-  block.tree = builder.build(boxes, kMaxLeafTriangles);
-  block.triangles.reserve(count * kBvhTriangleTexels);
+  std::vector<Box> boxes;
+  std::vector<uint32_t> triangles;
+  for (uint32_t i = 0; i < source.corners.size() / 3; ++i) {
+    const glm::vec3* corners = &source.corners[3 * size_t(i)];
+    if (isDegenerate(corners)) continue;
+    Box& box = boxes.emplace_back();
+    for (int k = 0; k < 3; ++k) box.add(corners[k]);
+    block.box.add(box);
+    triangles.push_back(i);
+  }
+
+  block.tree = widenTriangles(builder.build(boxes, kBvhLeafTriangles), boxes, kBlockHeight);
+  block.triangles.reserve(block.tree.items.size() * kBvhTriangleTexels);
   for (const uint32_t item : block.tree.items) {
-    const glm::vec3* corners = &source.corners[3 * size_t(item)];
-    const uint32_t id = (source.firstTriangle + item) | (source.alphaTested ? kBvhAlphaBit : 0u);
-    block.triangles.push_back(withWord(corners[0], id));
+    const glm::vec3* corners = &source.corners[3 * size_t(triangles[item])];
+    const uint32_t id = source.firstTriangle + triangles[item];
+    LIMN_CHECK_LE(id, ~kBvhAlphaBit);
+    block.triangles.push_back(withWord(corners[0], source.alphaTested ? id | kBvhAlphaBit : id));
     block.triangles.push_back({corners[1], 0});
     block.triangles.push_back({corners[2], 0});
   }
@@ -49,13 +67,19 @@ Result<void> SceneBvh::update(vk::Device& device, std::span<const TriangleBlock>
 
   std::vector<Box> boxes;
   std::vector<uint32_t> blockOfItem;
+  uint32_t blockHeight = 1;
   for (uint32_t i = 0; i < m_blocks.size(); ++i) {
-    if (m_blocks[i].tree.nodes.empty()) continue;
-    boxes.push_back(m_blocks[i].tree.nodes[0].box);
+    if (m_blocks[i].triangles.empty()) continue;
+    boxes.push_back(m_blocks[i].box);
     blockOfItem.push_back(i);
+    blockHeight = std::max(blockHeight, m_blocks[i].tree.height);
   }
-  const BvhTables tables = layOut(m_builder.build(boxes, 1), blockOfItem, m_blocks);
-  if (auto stored = store(device, tables); !stored) return stored;
+  // A graft counts in both heights.
+  const WideBvh top = widenTop(m_builder.build(boxes, 1), boxes, kBvhMaxHeight + 1 - blockHeight);
+  if (top.height + blockHeight > kBvhMaxHeight + 1) return Error{"limit", "the scene's BVH is too deep", ""};
+  auto tables = layOut(top, blockOfItem, m_blocks);
+  if (!tables) return tables.error();
+  if (auto stored = store(device, *tables); !stored) return stored;
   m_stats.blocksRebuilt = uint32_t(rebuild.size());
   m_stats.buildMs = (nowSeconds() - start) * 1e3;
   return {};
@@ -76,7 +100,7 @@ Result<void> SceneBvh::store(vk::Device& device, const BvhTables& tables) {
   if (!nodes) return nodes;
   auto triangles = put(m_triangles, std::span(tables.triangles), "bvh.triangles", VK_FORMAT_R32G32B32A32_SFLOAT);
   if (!triangles) return triangles;
-  m_stats.nodes = tables.nodeCount;
+  m_stats.nodes = uint32_t(tables.nodes.size());
   m_stats.triangles = uint32_t(tables.triangles.size() / kBvhTriangleTexels);
   m_stats.bytes = m_nodes.size() + m_triangles.size();
   return {};

@@ -4,24 +4,26 @@
 #include <span>
 #include <vector>
 
-#include "renderer/visibility/bvh_build.hpp"
+#include "renderer/base/result.hpp"
+#include "renderer/visibility/bvh_wide.hpp"
 
 namespace limn {
 
 /// A block's own tree and its triangles in the tree's order.
 struct BvhBlock {
-  BvhTree tree;                      ///< items index `triangles`
+  Box box;                           ///< of its triangles; empty when it has none that can be hit
+  WideBvh tree;                      ///< grafts are empty
   std::vector<glm::vec4> triangles;  ///< kBvhTriangleTexels a triangle, as on the device
 };
 
-/// The bytes of the device's two texel buffers (shaders/shared/bvh_shared.h). Never empty.
+/// The content of the device's two texel buffers (shaders/shared/bvh_shared.h). Never empty.
 struct BvhTables {
-  std::vector<glm::uvec4> nodes;
+  std::vector<shared::BvhNode> nodes;
   std::vector<glm::vec4> triangles;
-  uint32_t nodeCount = 0;
 };
 
-/// `top` is a tree over the blocks that have triangles; `blockOfItem` names the block of each of its items.
-BvhTables layOut(const BvhTree& top, std::span<const uint32_t> blockOfItem, std::span<const BvhBlock> blocks);
+/// Puts the blocks' trees under the top tree: the root, the top's nodes, then block after block. `blockOfItem` names the block of
+/// each item of `top`. Errors: "limit" (more nodes or triangles than bases can count).
+Result<BvhTables> layOut(const WideBvh& top, std::span<const uint32_t> blockOfItem, std::span<const BvhBlock> blocks);
 
 }  // namespace limn
