@@ -1,0 +1,86 @@
+#include "server/daemon/render_thread.hpp"
+
+#include <cstdio>
+
+#include "renderer/base/clock.hpp"
+#include "renderer/base/log.hpp"
+#include "renderer/scene/gltf_loader.hpp"
+#include "renderer/session/session.hpp"
+#include "renderer/vk/device.hpp"
+
+namespace limn::server {
+namespace {
+
+std::string milliseconds(double begin) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f ms", (nowSeconds() - begin) * 1e3);
+  return text;
+}
+
+Result<std::unique_ptr<vk::Device>> openDevice(const DaemonOptions& options) {
+  const double begin = nowSeconds();
+  vk::DeviceOptions wanted;
+  wanted.select = options.device;
+  wanted.cacheDir = options.stateDir.string();
+  auto device = vk::Device::open(wanted);
+  if (device) logInfo("device " + (*device)->info().name + ", driver " + (*device)->info().driver + ", opened in " + milliseconds(begin));
+  return device;
+}
+
+Result<std::unique_ptr<Session>> makeSession(vk::Device& device, const DaemonOptions& options, Mailbox& mailbox, FrameSlot& frames,
+                                             StatusQueue& replies) {
+  double begin = nowSeconds();
+  Result<LoadedScene> loaded = loadGltf(options.scene, {options.assetRoot, {}});
+  if (!loaded) return loaded.error();
+  logInfo(options.scene.filename().string() + ": " + std::to_string(loaded->report.triangles) + " triangles, read in " + milliseconds(begin));
+  for (const LoadReport::Item& item : loaded->report.unsupported) logWarning("not supported: " + item.feature + ": " + item.note);
+  for (const std::string& note : loaded->report.notes) logInfo(note);
+
+  begin = nowSeconds();
+  SessionConfig config;
+  config.width = options.width;
+  config.height = options.height;
+  config.technique = options.technique;
+  auto session = Session::create(device, std::move(loaded->scene), std::move(loaded->report), config, mailbox, frames, replies);
+  if (session) logInfo("built and warmed up in " + milliseconds(begin) + (device.pipelineCacheLoaded() ? ", pipelines from the cache" : ", pipelines compiled"));
+  return session;
+}
+
+}  // namespace
+
+RenderThread::RenderThread(const DaemonOptions& options, Mailbox& mailbox, FrameSlot& frames, StatusQueue& replies)
+    : m_mailbox(mailbox), m_thread([this, options, &frames, &replies] { run(options, frames, replies); }) {}
+
+RenderThread::~RenderThread() {
+  if (m_thread.joinable()) (void)finish();
+}
+
+void RenderThread::start(std::function<void()> ready, std::function<void()> ended) {
+  m_started = true;
+  m_startPromise.set_value({std::move(ready), std::move(ended)});
+}
+
+Result<void> RenderThread::finish() {
+  m_mailbox.close();
+  if (!m_started) start([] {}, [] {});
+  m_thread.join();
+  return m_outcome;
+}
+
+void RenderThread::run(const DaemonOptions& options, FrameSlot& frames, StatusQueue& replies) {
+  Result<std::unique_ptr<vk::Device>> device = openDevice(options);
+  m_openedPromise.set_value(device ? Result<void>() : Result<void>(device.error()));
+  const Callbacks callbacks = m_start.get();
+  if (device && !m_mailbox.closed()) {
+    Result<std::unique_ptr<Session>> session = makeSession(**device, options, m_mailbox, frames, replies);
+    if (session) {
+      callbacks.ready();
+      m_outcome = (*session)->run();
+    } else {
+      m_outcome = session.error();
+    }
+  }
+  callbacks.ended();
+}
+
+}  // namespace limn::server

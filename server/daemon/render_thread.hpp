@@ -1,0 +1,43 @@
+#pragma once
+#include <functional>
+#include <future>
+#include <thread>
+
+#include "renderer/base/result.hpp"
+#include "renderer/session/mailbox.hpp"
+#include "server/daemon/daemon_options.hpp"
+
+namespace limn::server {
+
+/// The thread that owns device, scene and session. It meets the others in the three boxes only.
+class RenderThread {
+ public:
+  /// Opens the device at once, before the caller starts threads that read the environment.
+  RenderThread(const DaemonOptions& options, Mailbox& mailbox, FrameSlot& frames, StatusQueue& replies);
+  ~RenderThread();
+  RenderThread(const RenderThread&) = delete;
+  RenderThread& operator=(const RenderThread&) = delete;
+
+  /// Waits for the device. Errors: those of vk::Device::open.
+  Result<void> opened() { return m_opened.get(); }
+  /// Loads the scene and renders until the mailbox is closed. `ready` is called when the first edit could be applied,
+  /// `ended` at the end; both on the render thread. The boxes' wake functions are set by now.
+  void start(std::function<void()> ready, std::function<void()> ended);
+  /// Closes the mailbox, waits for the thread, and says why it ended.
+  Result<void> finish();
+
+ private:
+  struct Callbacks { std::function<void()> ready, ended; };
+  void run(const DaemonOptions& options, FrameSlot& frames, StatusQueue& replies);
+
+  Mailbox& m_mailbox;
+  std::promise<Result<void>> m_openedPromise;
+  std::future<Result<void>> m_opened = m_openedPromise.get_future();
+  std::promise<Callbacks> m_startPromise;
+  std::future<Callbacks> m_start = m_startPromise.get_future();
+  bool m_started = false;
+  Result<void> m_outcome;   ///< written by the thread, read after it was joined
+  std::thread m_thread;
+};
+
+}  // namespace limn::server
