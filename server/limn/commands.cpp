@@ -21,7 +21,9 @@ std::string overview() {
 
 }  // namespace
 
-std::vector<Command> allCommands() { return {renderCommand(), compareCommand(), mergeCommand(), devicesCommand()}; }
+std::vector<Command> allCommands() {
+  return {renderCommand(), sendCommand(), compareCommand(), mergeCommand(), infoCommand(), devicesCommand()};
+}
 
 int runLimn(const std::vector<std::string>& words) {
   setLogLevel(LogLevel::warning);  // stderr is for what went wrong

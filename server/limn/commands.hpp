@@ -16,6 +16,7 @@ Command devicesCommand();
 Command infoCommand();
 Command mergeCommand();
 Command renderCommand();
+Command sendCommand();
 
 /// Every subcommand, in the order of the help.
 std::vector<Command> allCommands();

@@ -1,19 +1,13 @@
 #include "server/limn/render_stats.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 
 #include "protocol/json_writer.hpp"
+#include "server/limn/hex_text.hpp"
 
 namespace limn {
 namespace {
-
-std::string hexadecimal(uint64_t value) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-  return text;
-}
 
 std::string parametersText(std::vector<std::pair<std::string, double>> parameters) {
   std::sort(parameters.begin(), parameters.end());
@@ -90,7 +84,7 @@ std::string renderStatsJson(const RenderStats& stats) {
   protocol::JsonWriter json;
   json.beginObject();
   json.field("scene", stats.scene);
-  json.field("sceneHash", hexadecimal(stats.sceneHash));
+  json.field("sceneHash", hexText(stats.sceneHash));
   json.field("triangles", stats.report.triangles);
   json.field("output", stats.output);
   json.field("width", stats.config.width);
@@ -122,7 +116,7 @@ Metadata filmMetadata(const RenderStats& stats, const View& view, double seconds
   return {{"limn:parameters", parametersText(stats.config.parameters)},
           {"limn:samples", sampleRangeText(stats.samples)},
           {"limn:scene", std::filesystem::path(stats.scene).filename().string()},
-          {"limn:sceneHash", hexadecimal(stats.sceneHash)},
+          {"limn:sceneHash", hexText(stats.sceneHash)},
           {"limn:seconds", protocol::javascriptNumber(seconds)},
           {"limn:seed", std::to_string(stats.config.seed)},
           {"limn:technique", stats.config.technique},
