@@ -40,16 +40,22 @@ struct DriverKey {
 };
 
 DriverKey driverKey(VkPhysicalDevice physical) {
+  // The UUIDs should change with the driver; lavapipe's do not, so its own version words are in the name as well.
+  auto driver = typed<VkPhysicalDeviceDriverProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES);
   auto ids = typed<VkPhysicalDeviceIDProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ID_PROPERTIES);
   auto properties = typed<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
   properties.pNext = &ids;
+  ids.pNext = &driver;
   vkGetPhysicalDeviceProperties2(physical, &properties);
   DriverKey key;
   key.base = properties.properties;
+  const uint64_t versionHash = fnv1a(std::string(driver.driverInfo) + std::to_string(key.base.driverVersion));
+  uint8_t version[sizeof versionHash];
+  std::memcpy(version, &versionHash, sizeof version);
   char numbers[32];
   std::snprintf(numbers, sizeof numbers, "%08x_%08x_", key.base.vendorID, key.base.deviceID);
   key.fileName = "pipelines_" + std::string(numbers) + hex(ids.driverUUID, VK_UUID_SIZE) + "_" +
-                 hex(key.base.pipelineCacheUUID, VK_UUID_SIZE) + ".bin";
+                 hex(key.base.pipelineCacheUUID, VK_UUID_SIZE) + "_" + hex(version, sizeof version) + ".bin";
   return key;
 }
 

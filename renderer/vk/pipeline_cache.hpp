@@ -6,8 +6,8 @@
 
 namespace limn::vk {
 
-/// VkPipelineCache with its file, whose name holds vendor, device, driver UUID and cache UUID. A file that is torn, altered or
-/// of another driver is ignored with a warning. Render thread.
+/// VkPipelineCache with its file, whose name holds vendor, device, driver UUID, cache UUID and driver version. A
+/// file that is torn, altered or of another driver is ignored with a warning. Render thread.
 class PipelineCache {
  public:
   /// `directory` "" keeps no file. Errors: "out-of-memory".
