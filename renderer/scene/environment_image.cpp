@@ -11,19 +11,23 @@ namespace limn {
 namespace {
 
 constexpr int kMaxChannels = 64;
+constexpr const char* kExrReader = "openexr";
 
 const char* readerOf(const std::vector<uint8_t>& bytes) {
   constexpr uint8_t kExr[4] = {0x76, 0x2f, 0x31, 0x01};
-  if (bytes.size() >= 4 && std::memcmp(bytes.data(), kExr, 4) == 0) return "openexr";
+  if (bytes.size() >= 4 && std::memcmp(bytes.data(), kExr, 4) == 0) return kExrReader;
   if (bytes.size() >= 2 && bytes[0] == '#' && bytes[1] == '?') return "hdr";
   return nullptr;
 }
 
+/// Deep data and several parts are bits of an EXR's version field; such files never reach the library.
+bool deepOrMultiPart(const std::vector<uint8_t>& bytes) {
+  constexpr uint8_t kDeep = 0x08, kMultiPart = 0x10;
+  return bytes.size() < 8 || (bytes[5] & (kDeep | kMultiPart)) != 0;
+}
+
 Result<void> checkHeader(OIIO::ImageInput& input, const LoadLimits& limits) {
   const OIIO::ImageSpec spec = input.spec();
-  if (spec.deep || input.seek_subimage(1, 0))
-    return Error{"unsupported", "deep and multi-part images are not supported", ""};
-  if (!input.seek_subimage(0, 0)) return Error{"bad-file", "the image cannot be read: " + oiioMessage(input), ""};
   if (spec.width < 1 || spec.height < 1 || spec.depth != 1) return Error{"bad-file", "the image has no texels", ""};
   if (spec.nchannels < 1 || spec.nchannels > kMaxChannels)
     return Error{"unsupported", "the image has too many channels", ""};
@@ -81,6 +85,9 @@ Result<Image> load(const std::filesystem::path& file, const LoadLimits& limits, 
 
   const char* const name = readerOf(*bytes);
   if (!name) return Error{"unsupported", "the environment is neither Radiance HDR nor OpenEXR", ""};
+  if (name == kExrReader && deepOrMultiPart(*bytes)) {
+    return Error{"unsupported", "deep and multi-part images are not supported", ""};
+  }
   OIIO::Filesystem::IOMemReader memory(bytes->data(), bytes->size());
   auto input = openOiio(name, memory);
   if (!input) return input.error();

@@ -69,10 +69,13 @@ TEST(GltfGeometry, IndexBeyondTheVerticesIsRefused) {
 TEST(GltfGeometry, InterleavedAttributes) {
   GltfBuilder b;
   // position, normal, uv of three vertices side by side
-  const std::vector<float> data = {0, 0, 0, 0, 0, 1, 0.25f, 0.5f, 2, 0, 0, 0, 0, 1, 0.5f, 0.5f, 0, 2, 0, 0, 0, 1, 0.75f, 1};
+  const std::vector<float> data = {0, 0, 0,    0,    0, 1, 0.25f, 0.5f, 2, 0, 0,     0,
+                                   0, 1, 0.5f, 0.5f, 0, 2, 0,     0,    0, 1, 0.75f, 1};
   const int view = b.view(data, 32);
   const auto part = [&](const char* type, int offset) {
-    return b.push("accessors", {{"bufferView", view}, {"byteOffset", offset}, {"componentType", 5126}, {"count", 3}, {"type", type}});
+    return b.push(
+        "accessors",
+        {{"bufferView", view}, {"byteOffset", offset}, {"componentType", 5126}, {"count", 3}, {"type", type}});
   };
   b.show({{"POSITION", part("VEC3", 0)}, {"NORMAL", part("VEC3", 12)}, {"TEXCOORD_0", part("VEC2", 24)}});
   const LoadedScene loaded = b.mustLoad();
@@ -89,7 +92,9 @@ TEST(GltfGeometry, SparseReplacesElementsOfADenseAndOfAnEmptyAccessor) {
     nlohmann::json& position = b.doc["accessors"][0];
     if (!dense) position.erase("bufferView");
     const int indices = b.view<uint8_t>({1, 2}), values = b.view<float>({5, 0, 0, 5, 5, 0});
-    position["sparse"] = {{"count", 2}, {"indices", {{"bufferView", indices}, {"componentType", 5121}}}, {"values", {{"bufferView", values}}}};
+    position["sparse"] = {{"count", 2},
+                          {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+                          {"values", {{"bufferView", values}}}};
     const LoadedScene loaded = b.mustLoad();
     const Primitive& p = onlyPrimitive(loaded);
     EXPECT_EQ(p.positions[1], glm::vec3(5, 0, 0));
@@ -102,7 +107,9 @@ TEST(GltfGeometry, SparseIndicesMustIncrease) {
   GltfBuilder b;
   b.square();
   const int indices = b.view<uint8_t>({2, 1}), values = b.view<float>({5, 0, 0, 5, 5, 0});
-  b.doc["accessors"][0]["sparse"] = {{"count", 2}, {"indices", {{"bufferView", indices}, {"componentType", 5121}}}, {"values", {{"bufferView", values}}}};
+  b.doc["accessors"][0]["sparse"] = {{"count", 2},
+                                     {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+                                     {"values", {{"bufferView", values}}}};
   EXPECT_EQ(b.refusal(), "bad-file test.glb#/accessors/0/sparse/indices");
 }
 
@@ -112,7 +119,8 @@ TEST(GltfGeometry, QuantizedIntegersAreDecodedAsKhrMeshQuantizationSays) {
   const int positions = b.accessor<int16_t>({-32768, 0, 0, 32767, 0, 0, 0, 32767, 0, 0, 0, 0}, 3, true);
   const int normals = b.accessor<int8_t>({0, 0, 127, 0, 0, 127, 0, 0, 127, 0, 0, 127}, 3, true);
   const int uvs = b.accessor<uint16_t>({0, 3, 1, 2, 65535, 0, 7, 7}, 2);
-  // Vertices of three shorts or bytes need padding to a multiple of 4; the helper packs them, so one view each is stated.
+  // Vertices of three shorts or bytes need padding to a multiple of 4; the helper packs them, so one view each is
+  // stated.
   b.doc["accessors"][size_t(positions)]["count"] = 3;
   b.doc["accessors"][size_t(normals)]["count"] = 3;
   b.doc["accessors"][size_t(uvs)]["count"] = 3;
@@ -131,11 +139,17 @@ TEST(GltfGeometry, VertexColoursOfAllTypes) {
     primitive["attributes"]["COLOR_0"] = make(b);
     return onlyPrimitive(b.mustLoad()).colors;
   };
-  const auto bytes = colorsOf([](GltfBuilder& b) { return b.accessor<uint8_t>({255, 0, 51, 255, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 4, true); });
+  const auto bytes = colorsOf([](GltfBuilder& b) {
+    return b.accessor<uint8_t>({255, 0, 51, 255, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 4, true);
+  });
   EXPECT_EQ(bytes[0], glm::vec4(1, 0, 0.2f, 1));
-  const auto shorts = colorsOf([](GltfBuilder& b) { return b.accessor<uint16_t>({65535, 0, 13107, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 3, true); });
+  const auto shorts = colorsOf([](GltfBuilder& b) {
+    return b.accessor<uint16_t>({65535, 0, 13107, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 3, true);
+  });
   EXPECT_EQ(shorts[0], glm::vec4(1, 0, 0.2f, 1));
-  const auto floats = colorsOf([](GltfBuilder& b) { return b.accessor<float>({2, 0.5f, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1}, 3); });
+  const auto floats = colorsOf([](GltfBuilder& b) {
+    return b.accessor<float>({2, 0.5f, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1}, 3);
+  });
   EXPECT_EQ(floats[0], glm::vec4(2, 0.5f, 0, 1));
 }
 
@@ -184,7 +198,8 @@ TEST(GltfGeometry, PositionsMustBeFiniteAndNear) {
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e30f}) {
     GltfBuilder b;
     b.show({{"POSITION", b.accessor<float>({0, 0, 0, 1, bad, 0, 0, 1, 0}, 3)}});
-    EXPECT_EQ(b.refusal(), std::isfinite(bad) ? "out-of-range test.glb#/accessors/0" : "bad-file test.glb#/accessors/0");
+    EXPECT_EQ(b.refusal(),
+              std::isfinite(bad) ? "out-of-range test.glb#/accessors/0" : "bad-file test.glb#/accessors/0");
   }
 }
 
@@ -224,7 +239,8 @@ TEST(GltfGeometry, TrianglesOverAllNodesAreLimited) {
 
 TEST(GltfGeometry, AnEmptyAccessorOfAbsurdSizeIsRefusedBeforeItIsAllocated) {
   GltfBuilder b;
-  b.show({{"POSITION", b.push("accessors", {{"componentType", 5126}, {"count", 4'000'000'000'000ull}, {"type", "VEC3"}})}});
+  b.show({{"POSITION",
+           b.push("accessors", {{"componentType", 5126}, {"count", 4'000'000'000'000ull}, {"type", "VEC3"}})}});
   EXPECT_EQ(b.refusal(), "limit test.glb#/accessors/0/count");
 }
 

@@ -9,7 +9,8 @@
 namespace limn::test {
 
 /// A file made by OpenImageIO's writer of that name, in memory.
-inline std::vector<uint8_t> imageBytes(const char* writer, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* texels) {
+inline std::vector<uint8_t> imageBytes(const char* writer, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+                                       const void* texels) {
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
   auto output = OIIO::ImageOutput::create(writer);
@@ -30,7 +31,8 @@ inline std::vector<uint8_t> pngBytes(int width, int height, int channels, bool s
   }
   if (sixteen) {
     for (uint16_t& v : wide) v = uint16_t(v * 257);
-    return imageBytes("png", OIIO::ImageSpec(width, height, channels, OIIO::TypeDesc::UINT16), OIIO::TypeDesc::UINT16, wide.data());
+    return imageBytes("png", OIIO::ImageSpec(width, height, channels, OIIO::TypeDesc::UINT16), OIIO::TypeDesc::UINT16,
+                      wide.data());
   }
   const std::vector<uint8_t> narrow(wide.begin(), wide.end());
   OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);

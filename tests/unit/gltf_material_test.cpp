@@ -36,13 +36,15 @@ TEST(GltfMaterial, DefaultsAreThoseOfTheSpecification) {
 }
 
 TEST(GltfMaterial, CoreFactors) {
-  const Material m = load({{"name", "Paint"},
-                           {"pbrMetallicRoughness", {{"baseColorFactor", {0.1, 0.2, 0.3, 0.4}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.6}}},
-                           {"emissiveFactor", {0.25, 0.5, 0.75}},
-                           {"alphaMode", "MASK"},
-                           {"alphaCutoff", 0.3},
-                           {"doubleSided", true},
-                           {"normalTexture", {{"index", 0}, {"scale", 0.7}}}});
+  const Material m =
+      load({{"name", "Paint"},
+            {"pbrMetallicRoughness",
+             {{"baseColorFactor", {0.1, 0.2, 0.3, 0.4}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.6}}},
+            {"emissiveFactor", {0.25, 0.5, 0.75}},
+            {"alphaMode", "MASK"},
+            {"alphaCutoff", 0.3},
+            {"doubleSided", true},
+            {"normalTexture", {{"index", 0}, {"scale", 0.7}}}});
   EXPECT_EQ(m.name, "Paint");
   EXPECT_EQ(m.baseColor, glm::vec4(0.1f, 0.2f, 0.3f, 0.4f));
   EXPECT_EQ(m.metallic, 0.5f);
@@ -57,17 +59,26 @@ TEST(GltfMaterial, CoreFactors) {
 
 TEST(GltfMaterial, Extensions) {
   const nlohmann::json texture = {{"index", 0}};
-  const Material m = load({{"emissiveFactor", {1, 0.5, 0}},
-                           {"extensions",
-                            {{"KHR_materials_emissive_strength", {{"emissiveStrength", 5'000'000'000}}},
-                             {"KHR_materials_ior", {{"ior", 1.33}}},
-                             {"KHR_materials_transmission", {{"transmissionFactor", 0.9}, {"transmissionTexture", texture}}},
-                             {"KHR_materials_volume", {{"thicknessFactor", 0.2}, {"attenuationDistance", 3}, {"attenuationColor", {0.1, 0.2, 0.3}}}},
-                             {"KHR_materials_specular", {{"specularFactor", 0.4}, {"specularColorFactor", {2, 1, 0}}, {"specularTexture", texture}, {"specularColorTexture", texture}}},
-                             {"KHR_materials_clearcoat",
-                              {{"clearcoatFactor", 0.8}, {"clearcoatRoughnessFactor", 0.1}, {"clearcoatTexture", texture},
-                               {"clearcoatRoughnessTexture", texture}, {"clearcoatNormalTexture", {{"index", 0}, {"scale", 0.5}}}}},
-                             {"KHR_materials_unlit", nlohmann::json::object()}}}});
+  const Material m =
+      load({{"emissiveFactor", {1, 0.5, 0}},
+            {"extensions",
+             {{"KHR_materials_emissive_strength", {{"emissiveStrength", 5'000'000'000}}},
+              {"KHR_materials_ior", {{"ior", 1.33}}},
+              {"KHR_materials_transmission", {{"transmissionFactor", 0.9}, {"transmissionTexture", texture}}},
+              {"KHR_materials_volume",
+               {{"thicknessFactor", 0.2}, {"attenuationDistance", 3}, {"attenuationColor", {0.1, 0.2, 0.3}}}},
+              {"KHR_materials_specular",
+               {{"specularFactor", 0.4},
+                {"specularColorFactor", {2, 1, 0}},
+                {"specularTexture", texture},
+                {"specularColorTexture", texture}}},
+              {"KHR_materials_clearcoat",
+               {{"clearcoatFactor", 0.8},
+                {"clearcoatRoughnessFactor", 0.1},
+                {"clearcoatTexture", texture},
+                {"clearcoatRoughnessTexture", texture},
+                {"clearcoatNormalTexture", {{"index", 0}, {"scale", 0.5}}}}},
+              {"KHR_materials_unlit", nlohmann::json::object()}}}});
   EXPECT_EQ(m.emission, glm::vec3(5e9f, 2.5e9f, 0));  // does not fit a 32-bit integer
   EXPECT_EQ(m.ior, 1.33f);
   EXPECT_EQ(m.transmission, 0.9f);
@@ -87,17 +98,21 @@ TEST(GltfMaterial, Extensions) {
 }
 
 TEST(GltfMaterial, FactorsOutOfRangeAreClampedAndNoted) {
-  const LoadedScene loaded = withMaterial({{"pbrMetallicRoughness", {{"metallicFactor", 1.5}, {"roughnessFactor", -0.1}}}}).mustLoad();
+  const LoadedScene loaded =
+      withMaterial({{"pbrMetallicRoughness", {{"metallicFactor", 1.5}, {"roughnessFactor", -0.1}}}}).mustLoad();
   EXPECT_EQ(loaded.scene.materials[0].metallic, 1.0f);
   EXPECT_EQ(loaded.scene.materials[0].roughness, 0.0f);
   EXPECT_TRUE(hasNote(loaded.report, "2 material factors out of their range"));
 }
 
 TEST(GltfMaterial, TextureTransformAndSampler) {
-  GltfBuilder b = withMaterial({{"pbrMetallicRoughness",
-                                 {{"baseColorTexture",
-                                   {{"index", 0},
-                                    {"extensions", {{"KHR_texture_transform", {{"offset", {0.1, 0.2}}, {"scale", {2, 3}}, {"rotation", 0.5}, {"texCoord", 1}}}}}}}}}});
+  GltfBuilder b =
+      withMaterial({{"pbrMetallicRoughness",
+                     {{"baseColorTexture",
+                       {{"index", 0},
+                        {"extensions",
+                         {{"KHR_texture_transform",
+                           {{"offset", {0.1, 0.2}}, {"scale", {2, 3}}, {"rotation", 0.5}, {"texCoord", 1}}}}}}}}}});
   b.push("samplers", {{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}});
   b.doc["textures"][0]["sampler"] = 0;
   const TextureRef t = b.mustLoad().scene.materials[0].baseColorTexture;
@@ -111,7 +126,8 @@ TEST(GltfMaterial, TextureTransformAndSampler) {
 }
 
 TEST(GltfMaterial, HigherTextureCoordinatesAreListed) {
-  const LoadedScene loaded = withMaterial({{"name", "Far"}, {"emissiveTexture", {{"index", 0}, {"texCoord", 2}}}}).mustLoad();
+  const LoadedScene loaded =
+      withMaterial({{"name", "Far"}, {"emissiveTexture", {{"index", 0}, {"texCoord", 2}}}}).mustLoad();
   const LoadReport::Item* item = unsupportedItem(loaded.report, "TEXCOORD_2");
   ASSERT_NE(item, nullptr);
   EXPECT_EQ(item->materials, std::vector<std::string>{"Far"});
@@ -120,7 +136,11 @@ TEST(GltfMaterial, HigherTextureCoordinatesAreListed) {
 
 TEST(GltfMaterial, UnsupportedExtensionsNameEveryAffectedMaterial) {
   GltfBuilder b = withMaterial({{"extensions", {{"KHR_materials_iridescence", {{"iridescenceFactor", 1}}}}}});
-  b.push("materials", {{"name", "Cloth"}, {"extensions", {{"KHR_materials_sheen", nlohmann::json::object()}, {"KHR_materials_iridescence", nlohmann::json::object()}}}});
+  b.push(
+      "materials",
+      {{"name", "Cloth"},
+       {"extensions",
+        {{"KHR_materials_sheen", nlohmann::json::object()}, {"KHR_materials_iridescence", nlohmann::json::object()}}}});
   b.doc["extensionsUsed"] = {"KHR_materials_sheen", "KHR_materials_iridescence", "KHR_xmp", "KHR_materials_ior"};
   const LoadReport report = b.mustLoad().report;
   ASSERT_NE(unsupportedItem(report, "KHR_materials_iridescence"), nullptr);
@@ -155,7 +175,8 @@ TEST(GltfMaterial, OcclusionTexturesAreNeitherUsedNorRead) {
 }
 
 TEST(GltfMaterial, OneImageForManySlotsIsReadOnce) {
-  const LoadedScene loaded = withMaterial({{"emissiveTexture", {{"index", 0}}}, {"normalTexture", {{"index", 0}}}}).mustLoad();
+  const LoadedScene loaded =
+      withMaterial({{"emissiveTexture", {{"index", 0}}}, {"normalTexture", {{"index", 0}}}}).mustLoad();
   ASSERT_EQ(loaded.scene.images.size(), 1u);
   EXPECT_EQ(loaded.scene.images[0].name, "Picture");
   EXPECT_EQ(loaded.report.imageBytes, 4u * 2 * 4);
@@ -171,8 +192,10 @@ TEST(GltfImage, PngOfOneToFourChannels) {
     const auto image = decodeImage(bytes, *header);
     ASSERT_TRUE(image.ok()) << image.error().text();
     const uint8_t* texel = &image->rgba8[(1 * 4 + 3) * 4];  // x = 3, y = 1: value 70 + channel
-    const std::vector<std::array<int, 4>> expected = {{70, 70, 70, 255}, {70, 70, 70, 71}, {70, 71, 72, 255}, {70, 71, 72, 73}};
-    for (size_t c = 0; c < 4; ++c) EXPECT_EQ(texel[c], expected[size_t(channels) - 1][c]) << channels << " channels, " << c;
+    const std::vector<std::array<int, 4>> expected = {
+        {70, 70, 70, 255}, {70, 70, 70, 71}, {70, 71, 72, 255}, {70, 71, 72, 73}};
+    for (size_t c = 0; c < 4; ++c)
+      EXPECT_EQ(texel[c], expected[size_t(channels) - 1][c]) << channels << " channels, " << c;
   }
 }
 
@@ -196,7 +219,8 @@ TEST(GltfImage, SixteenBitsBecomeEightAndAreNoted) {
 
 TEST(GltfImage, Jpeg) {
   const std::vector<uint8_t> grey(8 * 8 * 3, 128);
-  const std::vector<uint8_t> bytes = imageBytes("jpeg", OIIO::ImageSpec(8, 8, 3, OIIO::TypeDesc::UINT8), OIIO::TypeDesc::UINT8, grey.data());
+  const std::vector<uint8_t> bytes =
+      imageBytes("jpeg", OIIO::ImageSpec(8, 8, 3, OIIO::TypeDesc::UINT8), OIIO::TypeDesc::UINT8, grey.data());
   const auto header = readImageHeader(bytes);
   ASSERT_TRUE(header.ok());
   EXPECT_EQ(header->format, ImageHeader::Format::jpeg);

@@ -11,13 +11,15 @@ using nlohmann::json;
 glm::dvec3 at(const glm::dmat4& m, const glm::dvec3& p) { return glm::dvec3(m * glm::dvec4(p, 1.0)); }
 
 void expectNear(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e-9) {
-  EXPECT_LT(glm::length(a - b), tolerance) << a.x << " " << a.y << " " << a.z << " against " << b.x << " " << b.y << " " << b.z;
+  EXPECT_LT(glm::length(a - b), tolerance)
+      << a.x << " " << a.y << " " << a.z << " against " << b.x << " " << b.y << " " << b.z;
 }
 
 TEST(GltfNodes, HierarchyOfTranslationRotationScale) {
   GltfBuilder b;
   b.square();
-  b.doc["nodes"][0] = {{"children", {1}}, {"translation", {10, 0, 0}}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}};
+  b.doc["nodes"][0] = {
+      {"children", {1}}, {"translation", {10, 0, 0}}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}};
   b.push("nodes", {{"name", "Child"}, {"mesh", 0}, {"translation", {1, 0, 0}}, {"scale", {2, 3, 4}}});
   const Scene scene = b.mustLoad().scene;
   ASSERT_EQ(scene.nodes.size(), 2u);
@@ -109,7 +111,8 @@ TEST(GltfNodes, PlacesBeyondTheRangeOfNumbersAreRefused) {
 TEST(GltfCameras, FirstCameraGivesTheView) {
   GltfBuilder b;
   b.square();
-  b.push("cameras", {{"type", "orthographic"}, {"orthographic", {{"xmag", 2}, {"ymag", 3}, {"znear", 0}, {"zfar", 9}}}});
+  b.push("cameras",
+         {{"type", "orthographic"}, {"orthographic", {{"xmag", 2}, {"ymag", 3}, {"znear", 0}, {"zfar", 9}}}});
   b.push("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.25}}}});
   b.root({{"camera", 1}, {"translation", {0.5, 0.5, 4}}});
   b.root({{"camera", 0}, {"translation", {0.5, 0.5, 2}}, {"rotation", {0, 1, 0, 0}}});
@@ -144,10 +147,13 @@ TEST(GltfCameras, BadLensesAreRefused) {
     b.push("cameras", camera);
     return b.refusal();
   };
-  EXPECT_EQ(refusal({{"type", "perspective"}, {"perspective", {{"yfov", 4}, {"znear", 0.1}}}}), "out-of-range test.glb#/cameras/0/perspective/yfov");
-  EXPECT_EQ(refusal({{"type", "perspective"}, {"perspective", {{"yfov", 1}}}}), "bad-file test.glb#/cameras/0/perspective");
-  EXPECT_EQ(refusal({{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 0}, {"znear", 0}, {"zfar", 1}}}}),
-            "out-of-range test.glb#/cameras/0/orthographic/ymag");
+  EXPECT_EQ(refusal({{"type", "perspective"}, {"perspective", {{"yfov", 4}, {"znear", 0.1}}}}),
+            "out-of-range test.glb#/cameras/0/perspective/yfov");
+  EXPECT_EQ(refusal({{"type", "perspective"}, {"perspective", {{"yfov", 1}}}}),
+            "bad-file test.glb#/cameras/0/perspective");
+  EXPECT_EQ(
+      refusal({{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 0}, {"znear", 0}, {"zfar", 1}}}}),
+      "out-of-range test.glb#/cameras/0/orthographic/ymag");
   EXPECT_EQ(refusal({{"type", "fisheye"}}), "bad-file test.glb#/cameras/0/type");
 }
 
@@ -160,12 +166,16 @@ GltfBuilder withLight(const json& light) {
 }
 
 TEST(GltfLights, PointSpotDirectional) {
-  const Light point = withLight({{"type", "point"}, {"color", {1, 0.5, 0.25}}, {"intensity", 40}, {"range", 7}}).mustLoad().scene.lights.at(0);
+  const Light point = withLight({{"type", "point"}, {"color", {1, 0.5, 0.25}}, {"intensity", 40}, {"range", 7}})
+                          .mustLoad()
+                          .scene.lights.at(0);
   EXPECT_EQ(point.type, LightType::point);
   EXPECT_EQ(point.color, glm::vec3(1, 0.5f, 0.25f));
   EXPECT_EQ(point.intensity, 40.0f);
   EXPECT_EQ(point.range, 7.0f);
-  const Light spot = withLight({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.2}}}}).mustLoad().scene.lights.at(0);
+  const Light spot = withLight({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.2}}}})
+                         .mustLoad()
+                         .scene.lights.at(0);
   EXPECT_EQ(spot.type, LightType::spot);
   EXPECT_EQ(spot.innerConeAngle, 0.1f);
   EXPECT_EQ(spot.outerConeAngle, 0.2f);
@@ -177,7 +187,8 @@ TEST(GltfLights, PointSpotDirectional) {
 }
 
 TEST(GltfLights, ColoursAboveOneMoveIntoTheIntensity) {
-  const Light light = withLight({{"type", "point"}, {"color", {4, 2, 1}}, {"intensity", 10}}).mustLoad().scene.lights.at(0);
+  const Light light =
+      withLight({{"type", "point"}, {"color", {4, 2, 1}}, {"intensity", 10}}).mustLoad().scene.lights.at(0);
   EXPECT_EQ(light.color, glm::vec3(1, 0.5f, 0.25f));
   EXPECT_EQ(light.intensity, 40.0f);
 }
@@ -186,8 +197,10 @@ TEST(GltfLights, BadLightsAreRefused) {
   const std::string place = "test.glb#/extensions/KHR_lights_punctual/lights/0";
   EXPECT_EQ(withLight({{"type", "point"}, {"intensity", -1}}).refusal(), "out-of-range " + place + "/intensity");
   EXPECT_EQ(withLight({{"type", "spot"}}).refusal(), "bad-file " + place);
-  EXPECT_EQ(withLight({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}}}}).refusal(), "out-of-range " + place + "/spot");
-  EXPECT_EQ(withLight({{"type", "spot"}, {"spot", {{"outerConeAngle", 2}}}}).refusal(), "out-of-range " + place + "/spot/outerConeAngle");
+  EXPECT_EQ(withLight({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}}}}).refusal(),
+            "out-of-range " + place + "/spot");
+  EXPECT_EQ(withLight({{"type", "spot"}, {"spot", {{"outerConeAngle", 2}}}}).refusal(),
+            "out-of-range " + place + "/spot/outerConeAngle");
   EXPECT_EQ(withLight({{"type", "point"}, {"color", {0, -1, 0}}}).refusal(), "out-of-range " + place + "/color/1");
 }
 
@@ -207,7 +220,8 @@ TEST(GltfLights, WithoutLightANeutralEnvironmentIsAdded) {
 GltfBuilder withMorph() {
   GltfBuilder b;
   json& primitive = b.square();
-  const int up = b.accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, 3), right = b.accessor<float>({1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0}, 3);
+  const int up = b.accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, 3),
+            right = b.accessor<float>({1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0}, 3);
   primitive["targets"] = {{{"POSITION", up}}, {{"POSITION", right}}};
   return b;
 }
@@ -221,7 +235,9 @@ TEST(GltfMorph, WeightsOfTheNodeGoBeforeThoseOfTheMesh) {
   const Scene scene = b.mustLoad().scene;
   ASSERT_EQ(scene.meshes.size(), 3u);  // nodes 0 and 2 share one
   EXPECT_EQ(scene.nodes[0].mesh, scene.nodes[2].mesh);
-  const auto first = [&](size_t node) { return scene.meshes[size_t(scene.nodes[node].mesh)].primitives[0].positions[0]; };
+  const auto first = [&](size_t node) {
+    return scene.meshes[size_t(scene.nodes[node].mesh)].primitives[0].positions[0];
+  };
   EXPECT_EQ(first(0), glm::vec3(0, 0, 0.5f));
   EXPECT_EQ(first(1), glm::vec3(2, 0, 0));
   EXPECT_EQ(first(3), glm::vec3(0));
@@ -231,13 +247,16 @@ TEST(GltfMorph, FlatNormalsFollowTheMorphedShape) {
   GltfBuilder b = withMorph();
   json& primitive = b.doc["meshes"][0]["primitives"][0];
   primitive["attributes"].erase("NORMAL");
-  primitive["targets"][0]["POSITION"] = b.accessor<float>({0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 1}, 3);  // lifts the far edge
+  primitive["targets"][0]["POSITION"] =
+      b.accessor<float>({0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 1}, 3);  // lifts the far edge
   b.doc["meshes"][0]["weights"] = {1, 0};
   const Scene scene = b.mustLoad().scene;
-  expectNear(glm::dvec3(scene.meshes[0].primitives[0].normals[0]), glm::dvec3(0, -std::sqrt(0.5), std::sqrt(0.5)), 1e-6);
+  expectNear(glm::dvec3(scene.meshes[0].primitives[0].normals[0]), glm::dvec3(0, -std::sqrt(0.5), std::sqrt(0.5)),
+             1e-6);
 }
 
-/// The square on two joints: the left vertices on joint node 1, the right ones on joint node 2, which is moved by (0, 0, 3).
+/// The square on two joints: the left vertices on joint node 1, the right ones on joint node 2, which is moved by (0,
+/// 0, 3).
 GltfBuilder withSkin() {
   GltfBuilder b;
   json& primitive = b.square();
@@ -264,7 +283,8 @@ TEST(GltfSkin, VerticesFollowTheirJointsWhereverTheNodeIs) {
 TEST(GltfSkin, InverseBindMatricesApplyFirst) {
   GltfBuilder b = withSkin();
   std::vector<float> matrices;
-  for (int joint = 0; joint < 2; ++joint) matrices.insert(matrices.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -3.0f * float(joint), 1});
+  for (int joint = 0; joint < 2; ++joint)
+    matrices.insert(matrices.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -3.0f * float(joint), 1});
   b.doc["skins"][0]["inverseBindMatrices"] = b.accessor(matrices, 16);
   const Scene scene = b.mustLoad().scene;
   const Primitive& p = scene.meshes[0].primitives[0];
@@ -280,8 +300,10 @@ TEST(GltfSkin, JointsBeyondTheSkinAreRefused) {
 GltfBuilder withInstances() {
   GltfBuilder b;
   b.square();
-  const int translations = b.accessor<float>({1, 0, 0, 2, 0, 0, 3, 0, 0}, 3), scales = b.accessor<float>({1, 1, 1, 2, 2, 2, 0, 1, 1}, 3);
-  b.doc["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", translations}, {"SCALE", scales}};
+  const int translations = b.accessor<float>({1, 0, 0, 2, 0, 0, 3, 0, 0}, 3),
+            scales = b.accessor<float>({1, 1, 1, 2, 2, 2, 0, 1, 1}, 3);
+  b.doc["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", translations},
+                                                                              {"SCALE", scales}};
   return b;
 }
 
