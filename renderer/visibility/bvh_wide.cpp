@@ -123,7 +123,8 @@ class Widener {
   // Writes the subtree of `part` with its root at `slot`, the level-th node of its path.
   void write(const Part& part, uint32_t slot, uint32_t level) {
     m_wide.height = std::max(m_wide.height, level);
-    const uint32_t roomLeft = m_maxHeight > level ? m_maxHeight - level + 1 : 1;
+    const uint32_t highest = m_top ? m_maxHeight - 1 : m_maxHeight;  // below a top's nodes come its grafts
+    const uint32_t roomLeft = highest > level ? highest - level + 1 : 1;
     const bool equalShares = part.node == kNoNode || levelsNeeded(part.count, leafSize()) >= roomLeft;
     std::vector<Part> children = equalShares ? openByCount(part) : openBySurface(part);
     auto isInner = [this](const Part& p) { return m_top || !isLeaf(p); };

@@ -40,7 +40,8 @@ bool hitTriangle(TraceFrame f, vec3 cornerA, vec3 cornerB, vec3 cornerC, out vec
   precise float u = u1 - u2, v = v1 - v2, w = w1 - w2;
   float det = u + v + w;
   bool inside = min(u, min(v, w)) >= 0.0 || max(u, max(v, w)) <= 0.0;
-  hit = vec3(v, w, fma(u, a.z, fma(v, b.z, w * c.z))) / det;
+  vec3 weights = vec3(u, v, w) * (1.0 / det);
+  hit = vec3(weights.yz, dot(weights, vec3(a.z, b.z, c.z)));
   return inside && det != 0.0;
 }
 
