@@ -7,12 +7,25 @@
 namespace limn::vk {
 namespace {
 
-VkBufferUsageFlags usageFlags(BufferUsage usage) {
+bool needsAddress(const Device& device, BufferUsage usage) {
+  constexpr BufferUsage kAddressed =
+      BufferUsage::accelerationInput | BufferUsage::accelerationStorage | BufferUsage::scratch;
+  return device.hasRayQuery() && has(usage, kAddressed);
+}
+
+VkBufferUsageFlags usageFlags(const Device& device, BufferUsage usage) {
   VkBufferUsageFlags flags = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   if (has(usage, BufferUsage::storage)) flags |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   if (has(usage, BufferUsage::uniform)) flags |= VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
   if (has(usage, BufferUsage::texel)) flags |= VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
   if (has(usage, BufferUsage::indirect)) flags |= VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+  if (!needsAddress(device, usage)) return flags;
+  flags |= VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
+  if (has(usage, BufferUsage::accelerationInput)) {
+    flags |= VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
+  }
+  if (has(usage, BufferUsage::accelerationStorage)) flags |= VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR;
+  if (has(usage, BufferUsage::scratch)) flags |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   return flags;
 }
 
@@ -89,7 +102,7 @@ Result<Buffer> Buffer::create(Device& device, const BufferDesc& desc) {
   buffer.m_owner = desc.owner;
   auto info = typed<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
   info.size = desc.size;
-  info.usage = usageFlags(desc.usage);
+  info.usage = usageFlags(device, desc.usage);
   if (const VkResult r = vkCreateBuffer(device.handle(), &info, nullptr, &buffer.m_handle); r != VK_SUCCESS) {
     return deviceError(r, "vkCreateBuffer for " + desc.name);
   }
@@ -104,7 +117,7 @@ Result<Buffer> Buffer::create(Device& device, const BufferDesc& desc) {
 Result<void> Buffer::allocate(MemoryKind kind) {
   VkMemoryRequirements needs{};
   vkGetBufferMemoryRequirements(m_device->handle(), m_handle, &needs);
-  const auto allocation = allocateMemory(*m_device, needs, kind, m_name);
+  const auto allocation = allocateMemory(*m_device, needs, kind, needsAddress(*m_device, m_usage), m_name);
   if (!allocation) return allocation.error();
   m_memory = allocation->memory;
   m_mapped = allocation->mapped;
@@ -112,6 +125,10 @@ Result<void> Buffer::allocate(MemoryKind kind) {
   m_device->memoryUse().add(m_owner, m_allocatedBytes);
   const VkResult r = vkBindBufferMemory(m_device->handle(), m_handle, m_memory, 0);
   if (r != VK_SUCCESS) return deviceError(r, "vkBindBufferMemory for " + m_name);
+  if (!needsAddress(*m_device, m_usage)) return {};
+  auto info = typed<VkBufferDeviceAddressInfo>(VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO);
+  info.buffer = m_handle;
+  m_address = vkGetBufferDeviceAddress(m_device->handle(), &info);
   return {};
 }
 
@@ -137,6 +154,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
   m_handle = std::exchange(other.m_handle, VK_NULL_HANDLE);
   m_memory = std::exchange(other.m_memory, VK_NULL_HANDLE);
   m_view = std::exchange(other.m_view, VK_NULL_HANDLE);
+  m_address = std::exchange(other.m_address, 0);
   m_mapped = std::exchange(other.m_mapped, nullptr);
   m_size = std::exchange(other.m_size, 0);
   m_allocatedBytes = std::exchange(other.m_allocatedBytes, 0);

@@ -16,6 +16,9 @@ enum class BufferUsage : uint32_t {
   indirect = 8,
   transferSrc = 16,
   transferDst = 32,
+  accelerationInput = 64,     ///< vertices, indices or instances of an acceleration structure; nothing without ray queries
+  accelerationStorage = 128,  ///< AccelerationStructure's own
+  scratch = 256,              ///< AccelerationStructure's own
 };
 constexpr BufferUsage operator|(BufferUsage a, BufferUsage b) { return BufferUsage(uint32_t(a) | uint32_t(b)); }
 constexpr bool has(BufferUsage set, BufferUsage one) { return (uint32_t(set) & uint32_t(one)) != 0; }
@@ -55,6 +58,8 @@ class Buffer {
   VkBuffer handle() const { return m_handle; }
   /// The view over the whole buffer; null without BufferUsage::texel.
   VkBufferView view() const { return m_view; }
+  /// Device address of byte 0 for acceleration structures; 0 with other usage or without ray queries.
+  VkDeviceAddress address() const { return m_address; }
   /// Host address of byte 0, or null when this memory is not mapped. Coherent: no flush is needed, only that the
   /// device is not using the bytes.
   void* mapped() const { return m_mapped; }
@@ -74,6 +79,7 @@ class Buffer {
   VkBuffer m_handle = VK_NULL_HANDLE;
   VkDeviceMemory m_memory = VK_NULL_HANDLE;
   VkBufferView m_view = VK_NULL_HANDLE;
+  VkDeviceAddress m_address = 0;
   void* m_mapped = nullptr;
   size_t m_size = 0;
   uint64_t m_allocatedBytes = 0;

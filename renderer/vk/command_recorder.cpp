@@ -20,6 +20,7 @@ void checkBinding(const Device& device, const ComputePipeline& pipeline, const B
     case BindingKind::storage: LIMN_CHECK_EQ(binding.offset % limits.storageOffsetAlignment, 0u); break;
     case BindingKind::uniform: LIMN_CHECK_EQ(binding.offset % limits.uniformOffsetAlignment, 0u); break;
     case BindingKind::texel: LIMN_CHECK(binding.buffer && binding.buffer->view()); break;
+    case BindingKind::acceleration: LIMN_CHECK(binding.acceleration && *binding.acceleration); return;
     default: LIMN_CHECK(binding.image && *binding.image); return;
   }
   LIMN_CHECK(binding.buffer && *binding.buffer);
@@ -31,12 +32,16 @@ struct DescriptorWrites {
   std::vector<VkDescriptorBufferInfo> buffers;
   std::vector<VkDescriptorImageInfo> images;
   std::vector<VkBufferView> views;
+  std::vector<VkAccelerationStructureKHR> structures;
+  std::vector<VkWriteDescriptorSetAccelerationStructureKHR> structureWrites;
   std::vector<VkWriteDescriptorSet> writes;
 
   explicit DescriptorWrites(std::span<const Binding> bindings) {
     buffers.reserve(bindings.size());
     images.reserve(bindings.size());
     views.reserve(bindings.size());
+    structures.reserve(bindings.size());
+    structureWrites.reserve(bindings.size());
     for (const Binding& binding : bindings) add(binding);
   }
 
@@ -45,7 +50,13 @@ struct DescriptorWrites {
     write.dstBinding = binding.binding;
     write.descriptorCount = 1;
     write.descriptorType = descriptorType(binding.kind);
-    if (binding.image) {
+    if (binding.acceleration) {
+      auto& structureWrite = structureWrites.emplace_back(typed<VkWriteDescriptorSetAccelerationStructureKHR>(
+          VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR));
+      structureWrite.accelerationStructureCount = 1;
+      structureWrite.pAccelerationStructures = &structures.emplace_back(binding.acceleration->handle());
+      write.pNext = &structureWrite;
+    } else if (binding.image) {
       const VkSampler sampler = binding.kind == BindingKind::sampledImage ? binding.image->sampler() : VK_NULL_HANDLE;
       write.pImageInfo = &images.emplace_back(
           VkDescriptorImageInfo{sampler, binding.image->view(), binding.image->layout()});
@@ -160,13 +171,21 @@ void CommandRecorder::barrier() {
   memory.dstAccessMask = VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_UNIFORM_READ_BIT |
                          VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT |
                          VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_2_HOST_READ_BIT;
+  if (m_device.hasRayQuery()) {
+    memory.srcStageMask |= VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
+    memory.srcAccessMask |= VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR;
+    memory.dstStageMask |= VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
+    memory.dstAccessMask |=
+        VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR | VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR;
+  }
   auto info = typed<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
   info.memoryBarrierCount = 1;
   info.pMemoryBarriers = &memory;
   vkCmdPipelineBarrier2(m_slot->commands, &info);
 }
 
-void CommandRecorder::copyBuffer(const Buffer& src, size_t srcOffset, const Buffer& dst, size_t dstOffset, size_t size) {
+void CommandRecorder::copyBuffer(const Buffer& src, size_t srcOffset, const Buffer& dst, size_t dstOffset,
+                                 size_t size) {
   LIMN_CHECK(m_recording);
   LIMN_CHECK_LE(srcOffset + size, src.size());
   LIMN_CHECK_LE(dstOffset + size, dst.size());

@@ -5,6 +5,7 @@
 #include <span>
 #include <type_traits>
 
+#include "renderer/vk/acceleration_structure.hpp"
 #include "renderer/vk/buffer.hpp"
 #include "renderer/vk/compute_pipeline.hpp"
 #include "renderer/vk/image.hpp"
@@ -14,7 +15,8 @@ namespace limn::vk {
 class TimestampPool;
 struct CommandSlot;
 
-/// A resource for one binding of the shader. Make it with storage(), uniform(), texel(), sampled() or storageImage().
+/// A resource for one binding of the shader. Make it with storage(), uniform(), texel(), sampled(), storageImage()
+/// or acceleration().
 struct Binding {
   uint32_t binding = 0;
   BindingKind kind = BindingKind::storage;
@@ -22,22 +24,26 @@ struct Binding {
   size_t offset = 0;
   size_t size = 0;  ///< 0: to the end
   const Image* image = nullptr;
+  const AccelerationStructure* acceleration = nullptr;
 };
 
 inline Binding storage(uint32_t binding, const Buffer& buffer, size_t offset = 0, size_t size = 0) {
-  return {binding, BindingKind::storage, &buffer, offset, size, nullptr};
+  return {binding, BindingKind::storage, &buffer, offset, size, nullptr, nullptr};
 }
 inline Binding uniform(uint32_t binding, const Buffer& buffer, size_t offset = 0, size_t size = 0) {
-  return {binding, BindingKind::uniform, &buffer, offset, size, nullptr};
+  return {binding, BindingKind::uniform, &buffer, offset, size, nullptr, nullptr};
 }
 inline Binding texel(uint32_t binding, const Buffer& buffer) {
-  return {binding, BindingKind::texel, &buffer, 0, 0, nullptr};
+  return {binding, BindingKind::texel, &buffer, 0, 0, nullptr, nullptr};
 }
 inline Binding sampled(uint32_t binding, const Image& image) {
-  return {binding, BindingKind::sampledImage, nullptr, 0, 0, &image};
+  return {binding, BindingKind::sampledImage, nullptr, 0, 0, &image, nullptr};
 }
 inline Binding storageImage(uint32_t binding, const Image& image) {
-  return {binding, BindingKind::storageImage, nullptr, 0, 0, &image};
+  return {binding, BindingKind::storageImage, nullptr, 0, 0, &image, nullptr};
+}
+inline Binding acceleration(uint32_t binding, const AccelerationStructure& structure) {
+  return {binding, BindingKind::acceleration, nullptr, 0, 0, nullptr, &structure};
 }
 
 /// The bytes of a push-constant struct.

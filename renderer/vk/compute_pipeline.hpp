@@ -14,6 +14,7 @@ enum class BindingKind {
   texel,         ///< samplerBuffer, isamplerBuffer, usamplerBuffer
   sampledImage,  ///< sampler2DArray
   storageImage,  ///< image2DArray
+  acceleration,  ///< accelerationStructureEXT
 };
 
 VkDescriptorType descriptorType(BindingKind kind);

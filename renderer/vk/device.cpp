@@ -1,6 +1,7 @@
 #include "renderer/vk/device.hpp"
 
 #include <cstdlib>
+#include <type_traits>
 
 #include "renderer/base/log.hpp"
 #include "renderer/vk/command_recorder.hpp"
@@ -48,7 +49,8 @@ void enableFeatures(const FeatureChain& has, const DeviceFeatures& use, FeatureC
 std::set<std::string> wantedExtensions(const std::set<std::string>& present, const DeviceFeatures& use) {
   std::set<std::string> wanted;
   if (use.pushDescriptors) wanted.insert(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
-  if (present.count(VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME)) wanted.insert(VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME);
+  const char* atomicFloat = VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME;
+  if (present.count(atomicFloat)) wanted.insert(atomicFloat);
   if (use.rayQuery) {
     wanted.insert({VK_KHR_RAY_QUERY_EXTENSION_NAME, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
                    VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME});
@@ -119,14 +121,7 @@ Result<void> Device::init() {
   if (const VkResult r = createDevice(m_physical, m_queueFamily, m_features, &m_handle); r != VK_SUCCESS) {
     return deviceError(r, "vkCreateDevice");
   }
-  if (m_features.pushDescriptors) {
-    m_functions.cmdPushDescriptorSet = reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(
-        vkGetDeviceProcAddr(m_handle, "vkCmdPushDescriptorSetKHR"));
-  }
-  if (m_instance->hasDebugUtils()) {
-    m_functions.setObjectName = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(
-        vkGetInstanceProcAddr(m_instance->handle(), "vkSetDebugUtilsObjectNameEXT"));
-  }
+  loadFunctions();
   auto queue = Queue::create(*this);
   if (!queue) return queue.error();
   m_queue = queue.take();
@@ -138,6 +133,24 @@ Result<void> Device::init() {
           (m_features.rayQuery ? ", ray query" : ", no ray query") +
           (m_pipelineCache->loaded() ? ", pipeline cache loaded" : ""));
   return {};
+}
+
+void Device::loadFunctions() {
+  const auto load = [&](auto& function, const char* name) {
+    function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(vkGetDeviceProcAddr(m_handle, name));
+    LIMN_CHECK(function != nullptr);
+  };
+  if (m_features.pushDescriptors) load(m_functions.cmdPushDescriptorSet, "vkCmdPushDescriptorSetKHR");
+  if (m_instance->hasDebugUtils()) {
+    m_functions.setObjectName = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(
+        vkGetInstanceProcAddr(m_instance->handle(), "vkSetDebugUtilsObjectNameEXT"));
+  }
+  if (!m_features.rayQuery) return;
+  load(m_functions.getAccelerationStructureBuildSizes, "vkGetAccelerationStructureBuildSizesKHR");
+  load(m_functions.createAccelerationStructure, "vkCreateAccelerationStructureKHR");
+  load(m_functions.destroyAccelerationStructure, "vkDestroyAccelerationStructureKHR");
+  load(m_functions.cmdBuildAccelerationStructures, "vkCmdBuildAccelerationStructuresKHR");
+  load(m_functions.getAccelerationStructureDeviceAddress, "vkGetAccelerationStructureDeviceAddressKHR");
 }
 
 Device::~Device() {

@@ -29,6 +29,11 @@ struct PipelineStats {
 struct DeviceFunctions {
   PFN_vkCmdPushDescriptorSetKHR cmdPushDescriptorSet = nullptr;
   PFN_vkSetDebugUtilsObjectNameEXT setObjectName = nullptr;
+  PFN_vkGetAccelerationStructureBuildSizesKHR getAccelerationStructureBuildSizes = nullptr;
+  PFN_vkCreateAccelerationStructureKHR createAccelerationStructure = nullptr;
+  PFN_vkDestroyAccelerationStructureKHR destroyAccelerationStructure = nullptr;
+  PFN_vkCmdBuildAccelerationStructuresKHR cmdBuildAccelerationStructures = nullptr;
+  PFN_vkGetAccelerationStructureDeviceAddressKHR getAccelerationStructureDeviceAddress = nullptr;
 };
 
 /// An opened Vulkan 1.3 device with one compute queue. Every other object of this layer is made from it and must be
@@ -102,6 +107,7 @@ class Device {
  private:
   explicit Device(DeviceOptions options);
   Result<void> init();
+  void loadFunctions();
 
   DeviceOptions m_options;
   DeviceInfo m_info;

@@ -26,9 +26,8 @@ Result<void> checkLimits(const Device& device, const ImageDesc& desc) {
                                     std::to_string(int(desc.format)), ""};
   }
   if (r != VK_SUCCESS) return deviceError(r, "vkGetPhysicalDeviceImageFormatProperties");
-  if (desc.width <= most.maxExtent.width && desc.height <= most.maxExtent.height && desc.layers <= most.maxArrayLayers) {
-    return {};
-  }
+  const bool fits = desc.width <= most.maxExtent.width && desc.height <= most.maxExtent.height;
+  if (fits && desc.layers <= most.maxArrayLayers) return {};
   return Error{"limit", desc.name + " wants " + std::to_string(desc.width) + "x" + std::to_string(desc.height) + "x" +
                             std::to_string(desc.layers) + " texels, the device holds at most " +
                             std::to_string(most.maxExtent.width) + "x" + std::to_string(most.maxExtent.height) + "x" +
@@ -92,7 +91,7 @@ Result<Image> Image::create(Device& device, const ImageDesc& desc) {
 Result<void> Image::allocate(const std::string& name) {
   VkMemoryRequirements needs{};
   vkGetImageMemoryRequirements(m_device->handle(), m_handle, &needs);
-  const auto allocation = allocateMemory(*m_device, needs, MemoryKind::deviceLocal, name);
+  const auto allocation = allocateMemory(*m_device, needs, MemoryKind::deviceLocal, false, name);
   if (!allocation) return allocation.error();
   m_memory = allocation->memory;
   m_allocatedBytes = allocation->bytes;

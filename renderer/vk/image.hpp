@@ -34,7 +34,8 @@ class Image {
   VkImage handle() const { return m_handle; }
   VkImageView view() const { return m_view; }
   VkSampler sampler() const { return m_sampler; }
-  /// What the image is in between the calls of this layer: GENERAL with ImageDesc::storage, else SHADER_READ_ONLY_OPTIMAL.
+  /// What the image is in between the calls of this layer: GENERAL with ImageDesc::storage, else
+  /// SHADER_READ_ONLY_OPTIMAL.
   VkImageLayout layout() const { return m_layout; }
   uint32_t width() const { return m_width; }
   uint32_t height() const { return m_height; }

@@ -15,9 +15,9 @@ VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT 
                                          VkDebugUtilsMessageTypeFlagsEXT types,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
   // Loaders report through the same channel what other drivers of the machine lack; that says nothing about our calls.
-  if ((types & (VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT)) == 0) {
-    return VK_FALSE;
-  }
+  constexpr VkDebugUtilsMessageTypeFlagsEXT kOurs =
+      VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+  if ((types & kOurs) == 0) return VK_FALSE;
   const std::string text = data->pMessage ? data->pMessage : "";
   const bool isError = (severity & VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT) != 0;
   log(isError ? LogLevel::error : LogLevel::warning, "validation: " + text);

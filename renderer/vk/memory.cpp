@@ -17,8 +17,8 @@ std::optional<uint32_t> findType(const VkPhysicalDeviceMemoryProperties& memory,
   return std::nullopt;
 }
 
-/// What to ask for, best first. Device-local memory is mapped only where the host caches it: uncached reads over a bus are
-/// slower than a copy. `0` takes anything, which a device without that heap has to answer with.
+/// What to ask for, best first. Device-local memory is mapped only where the host caches it: uncached reads over a bus
+/// are slower than a copy. `0` takes anything, which a device without that heap has to answer with.
 std::array<VkMemoryPropertyFlags, 3> wishes(const Device& device, MemoryKind kind) {
   const bool discrete = device.options().assumeDiscrete || device.info().type == "discrete";
   switch (kind) {
@@ -37,7 +37,7 @@ bool wantsMapping(const Device& device, MemoryKind kind, VkMemoryPropertyFlags f
 }  // namespace
 
 Result<Allocation> allocateMemory(const Device& device, const VkMemoryRequirements& needs, MemoryKind kind,
-                                  const std::string& name) {
+                                  bool deviceAddress, const std::string& name) {
   const DeviceLimits& limits = device.limits();
   if (needs.size > limits.maxMemoryAllocationSize) {
     return Error{"limit", name + " needs " + std::to_string(needs.size) + " bytes, one allocation holds at most " +
@@ -58,6 +58,9 @@ Result<Allocation> allocateMemory(const Device& device, const VkMemoryRequiremen
   auto info = typed<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
   info.allocationSize = needs.size;
   info.memoryTypeIndex = *type;
+  auto flags = typed<VkMemoryAllocateFlagsInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO);
+  flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+  if (deviceAddress) info.pNext = &flags;
   Allocation allocation;
   allocation.bytes = needs.size;
   if (const VkResult r = vkAllocateMemory(device.handle(), &info, nullptr, &allocation.memory); r != VK_SUCCESS) {

@@ -14,8 +14,9 @@ struct Allocation {
 };
 
 /// Picks the memory type for `kind` among those that `needs` allows, allocates, maps where that is of use.
+/// `deviceAddress` is for buffers that have one.
 /// Errors: "limit" (size or number of allocations), "out-of-memory", "unsupported" (no such memory).
 Result<Allocation> allocateMemory(const Device& device, const VkMemoryRequirements& needs, MemoryKind kind,
-                                  const std::string& name);
+                                  bool deviceAddress, const std::string& name);
 
 }  // namespace limn::vk

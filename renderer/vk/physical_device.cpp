@@ -8,7 +8,8 @@ namespace limn::vk {
 namespace {
 
 bool hasRayQueryExtensions(const std::set<std::string>& extensions) {
-  return extensions.count(VK_KHR_RAY_QUERY_EXTENSION_NAME) && extensions.count(VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME) &&
+  return extensions.count(VK_KHR_RAY_QUERY_EXTENSION_NAME) &&
+         extensions.count(VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME) &&
          extensions.count(VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME);
 }
 
@@ -116,7 +117,8 @@ DeviceInfo describeDevice(VkPhysicalDevice device, uint32_t index) {
   VkPhysicalDeviceMemoryProperties memory{};
   vkGetPhysicalDeviceMemoryProperties(device, &memory);
   for (uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
-    info.heaps.push_back({memory.memoryHeaps[i].size, (memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0});
+    const VkMemoryHeap& heap = memory.memoryHeaps[i];
+    info.heaps.push_back({heap.size, (heap.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0});
   }
   info.refusal = refusal(device, base.apiVersion);
   info.rayQuery = info.refusal.empty() && readFeatures(device).rayQuery;
@@ -124,7 +126,8 @@ DeviceInfo describeDevice(VkPhysicalDevice device, uint32_t index) {
 }
 
 DeviceLimits readLimits(VkPhysicalDevice device, uint32_t queueFamily) {
-  auto push = typed<VkPhysicalDevicePushDescriptorPropertiesKHR>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PUSH_DESCRIPTOR_PROPERTIES_KHR);
+  auto push = typed<VkPhysicalDevicePushDescriptorPropertiesKHR>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PUSH_DESCRIPTOR_PROPERTIES_KHR);
   auto v13 = typed<VkPhysicalDeviceVulkan13Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES);
   auto v11 = typed<VkPhysicalDeviceVulkan11Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES);
   auto properties = typed<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
@@ -167,7 +170,8 @@ DeviceFeatures readFeatures(VkPhysicalDevice device) {
   vkGetPhysicalDeviceFeatures2(device, &chain.root);
   DeviceFeatures features;
   features.pushDescriptors = extensions.count(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME) != 0;
-  features.rayQuery = chain.rayQuery.rayQuery && chain.acceleration.accelerationStructure && chain.v12.bufferDeviceAddress;
+  features.rayQuery =
+      chain.rayQuery.rayQuery && chain.acceleration.accelerationStructure && chain.v12.bufferDeviceAddress;
   features.bufferFloat32AtomicAdd = chain.atomicFloat.shaderBufferFloat32AtomicAdd;
   features.sharedFloat32AtomicAdd = chain.atomicFloat.shaderSharedFloat32AtomicAdd;
   features.int64 = chain.root.features.shaderInt64;
@@ -187,7 +191,8 @@ Result<size_t> chooseDevice(const std::vector<DeviceInfo>& devices, const std::s
   const bool byIndex = !select.empty() && failed == std::errc() && end == select.data() + select.size();
   for (size_t i = 0; i < devices.size(); ++i) {
     const DeviceInfo& device = devices[i];
-    const bool matches = byIndex ? device.index == index : lowered(device.name).find(lowered(select)) != std::string::npos;
+    const bool nameFits = lowered(device.name).find(lowered(select)) != std::string::npos;
+    const bool matches = byIndex ? device.index == index : nameFits;
     const bool eligible = matches && (device.refusal.empty() || !select.empty());
     if (eligible && (best == devices.size() || preference(device.type) > preference(devices[best].type))) best = i;
   }
