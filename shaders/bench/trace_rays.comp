@@ -2,11 +2,18 @@
 // Traces a buffer of rays, nothing else: for the benchmark and for the tests of shaders/lib/trace.glsl.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#ifdef LIMN_RAY_QUERY
+#extension GL_EXT_ray_query : require
+#endif
 #include "shaders/shared/bvh_shared.h"
 
 layout(local_size_x = 64) in;
+#ifdef LIMN_RAY_QUERY
+layout(binding = 0) uniform accelerationStructureEXT bvhAcceleration;
+#else
 layout(binding = 0) uniform BVH_NODE_SAMPLER bvhNodes;
 layout(binding = 1) uniform BVH_TRIANGLE_SAMPLER bvhTriangles;
+#endif
 
 struct Ray {
   vec3 originR;

@@ -1,0 +1,34 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "renderer/base/result.hpp"
+#include "renderer/visibility/bvh.hpp"
+#include "renderer/vk/acceleration_structure.hpp"
+
+namespace limn {
+
+/// The scene's triangles in the device's own acceleration structures, for shaders/lib/trace_ray_query.glsl: what SceneBvh is to
+/// trace_walk.glsl. Only for devices with hasRayQuery(). It has been compiled but never run: no test machine had such a
+/// device. Render thread.
+class SceneAcceleration {
+ public:
+  /// As SceneBvh::update. Errors: "limit" (a triangle id over 24 bits), and those of vk::AccelerationStructure.
+  Result<void> update(vk::Device& device, std::span<const TriangleBlock> blocks, std::span<const uint32_t> changed);
+
+  /// For the binding bvhAcceleration. Valid after the first update.
+  const vk::AccelerationStructure& top() const { return m_top; }
+
+ private:
+  struct Block {
+    vk::AccelerationStructure tree;  ///< null for a block without triangles
+    uint32_t firstTriangle = 0;
+  };
+  static Result<Block> buildBlock(vk::Device& device, const TriangleBlock& source);
+
+  std::vector<Block> m_blocks;
+  vk::AccelerationStructure m_top;
+};
+
+}  // namespace limn
