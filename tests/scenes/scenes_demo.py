@@ -86,7 +86,7 @@ def _materials(scene):
         "cover rust": glossy("Rust cover", (0.42, 0.085, 0.04), 0.5),
         "cover cream": glossy("Cream cover", (0.72, 0.62, 0.43), 0.5),
         "cover navy": glossy("Navy cover", (0.025, 0.05, 0.13), 0.45),
-        "window": materials.emitter("Window light", (4.4, 5.2, 5.9)),
+        "window": materials.emitter("Window light", (8.8, 10.4, 11.8)),
     }
     return {key: scene.add_material(material) for key, material in by_key.items()}
 
@@ -142,7 +142,7 @@ def _furniture(scene, material):
     outside, inside = lamp_dome()
     rim = vec.sub(hang, (0.0, 0.17, 0.0))
     scene.add_object("Lamp shade", [(outside, material["dome"]), (inside, material["dome inside"])], translation=rim)
-    scene.add_light("Lamp", "point", 4.0, (1.0, 0.72, 0.42), vec.add(rim, (0.0, 0.045, 0.0)))
+    scene.add_light("Lamp", "point", 8.0, (1.0, 0.72, 0.42), vec.add(rim, (0.0, 0.045, 0.0)))
 
 
 def _on_the_table(scene, material):
