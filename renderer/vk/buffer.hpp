@@ -16,7 +16,7 @@ enum class BufferUsage : uint32_t {
   indirect = 8,
   transferSrc = 16,
   transferDst = 32,
-  accelerationInput = 64,     ///< vertices, indices or instances of an acceleration structure; nothing without ray queries
+  accelerationInput = 64,     ///< vertices, indices, instances of an acceleration structure; nothing without ray queries
   accelerationStorage = 128,  ///< AccelerationStructure's own
   scratch = 256,              ///< AccelerationStructure's own
 };
@@ -39,7 +39,8 @@ struct BufferDesc {
 };
 
 /// A buffer with its own memory. Transfer usage is always added, so upload(), fill() and readBack() work on every
-/// buffer. Contents are undefined until written. Destroying one that the device still uses is safe. Render thread.
+/// buffer. Contents are undefined until written. Destroying one that the device still uses is safe, one that a
+/// recording names which was not submitted yet is not. Render thread.
 class Buffer {
  public:
   /// Checks the device's limits before it allocates. Errors: "limit" (over a limit, which is named), "unsupported"

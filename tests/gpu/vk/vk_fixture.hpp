@@ -24,7 +24,9 @@ T must(Result<T> result) {
   }
   return result.take();
 }
-inline void must(Result<void> result) { ASSERT_TRUE(result.ok()) << result.error().code << ": " << result.error().text(); }
+inline void must(Result<void> result) {
+  ASSERT_TRUE(result.ok()) << result.error().code << ": " << result.error().text();
+}
 
 /// A directory that is empty at first and gone afterwards.
 class TemporaryDirectory {
