@@ -16,7 +16,7 @@ enum class BufferUsage : uint32_t {
   indirect = 8,
   transferSrc = 16,
   transferDst = 32,
-  accelerationInput = 64,     ///< vertices, indices, instances of an acceleration structure; nothing without ray queries
+  accelerationInput = 64,     ///< what an acceleration structure is built from; nothing without ray queries
   accelerationStorage = 128,  ///< AccelerationStructure's own
   scratch = 256,              ///< AccelerationStructure's own
 };
