@@ -144,14 +144,24 @@ class Sending {
   uint64_t m_framesKept = 0;
 };
 
-Result<std::unique_ptr<Client>> connect(const Arguments& arguments, double timeout) {
+/// A server renders for those who watch; an error is judged by the pictures it publishes.
+bool watches(const Arguments& arguments, const std::vector<ScriptMessage>& script) {
+  const auto waitsForError = [](const ScriptMessage& entry) {
+    const auto* wait = std::get_if<Wait>(&entry.message);
+    return wait && wait->error;
+  };
+  return arguments.has("save") || arguments.has("wait-error") ||
+         std::any_of(script.begin(), script.end(), waitsForError);
+}
+
+Result<std::unique_ptr<Client>> connect(const Arguments& arguments, bool watch, double timeout) {
   ClientOptions options;
   options.url = arguments.positionals()[0];
   options.connectSeconds = timeout;
   if (const char* token = std::getenv("LIMN_TOKEN")) options.token = token;
   ClientHello hello;
   hello.client = "limn send";
-  hello.watch = arguments.has("save");
+  hello.watch = watch;
   return Client::greet(options, hello);
 }
 
@@ -169,7 +179,7 @@ Result<void> run(const Arguments& arguments) {
   if (!directory.empty() && !std::filesystem::is_directory(directory, problem))
     if (!std::filesystem::create_directories(directory, problem)) return Error{"io", problem.message(), directory};
 
-  const Result<std::unique_ptr<Client>> client = connect(arguments, *timeout);
+  const Result<std::unique_ptr<Client>> client = connect(arguments, watches(arguments, *script), *timeout);
   if (!client) return client.error();
   Sending sending(**client, directory, *timeout);
   for (const ScriptMessage& entry : *script)

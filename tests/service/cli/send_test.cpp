@@ -44,7 +44,7 @@ TEST_F(Send, PrintsOneLineAMessageWithItsCost) {
   ASSERT_EQ(run.exitCode, 0) << run.err;
   EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 3) << run.out;
   EXPECT_THAT(run.out, HasSubstr("line 1: set seq "));
-  EXPECT_THAT(run.out, HasSubstr("re-gather, "));
+  EXPECT_THAT(run.out, HasSubstr(": relight, "));
   EXPECT_THAT(run.out, HasSubstr("line 3: ping seq "));
   EXPECT_THAT(run.out, HasSubstr(" ms\n"));
   EXPECT_EQ(run.err, "");
@@ -65,6 +65,12 @@ TEST_F(Send, WaitsForConvergence) {
   ASSERT_EQ(run.exitCode, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("end: wait seq "));
   EXPECT_THAT(run.out, HasSubstr(" steps, film "));
+}
+
+TEST_F(Send, WaitsForAnErrorThatTheScriptNames) {
+  const test::ProgramRun run = send(std::string(kRoughness) + "\n{\"op\":\"wait\",\"error\":0.5}\n");
+  ASSERT_EQ(run.exitCode, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("line 2: wait seq "));
 }
 
 TEST_F(Send, StopsAtTheFirstErrorReplyAndShowsItsText) {
