@@ -42,15 +42,7 @@ FilmError combine(std::span<const shared::TileError> tiles, double meanValue, do
 
 Result<FilmStatistics> FilmStatistics::create(vk::Device& device, const Film& film) {
   FilmStatistics s;
-  s.m_tilesX = (film.width() + 15) / 16;
-  s.m_tilesY = (film.height() + 15) / 16;
-  const size_t tileCount = size_t(s.m_tilesX) * s.m_tilesY;
-  auto errors = makeReadback(device, tileCount * sizeof(shared::TileError), "film.tileErrors");
-  if (!errors) return errors.error();
-  s.m_tileErrors = errors.take();
-  auto counts = makeReadback(device, (tileCount + 1) * sizeof(uint32_t), "film.tileCounts");
-  if (!counts) return counts.error();
-  s.m_tileCounts = counts.take();
+  if (auto made = s.resize(device, film); !made) return made.error();
   const auto errorBindings = gpu::joined(film.bindings(), {vk::storage(BINDING_OUTPUT, s.m_tileErrors)});
   auto errorPass = gpu::Pass::create(device, "film_error", errorBindings, sizeof(shared::SelectPush));
   if (!errorPass) return errorPass.error();
@@ -67,6 +59,19 @@ Result<FilmStatistics> FilmStatistics::create(vk::Device& device, const Film& fi
   });
   if (!warm) return warm.error();
   return s;
+}
+
+Result<void> FilmStatistics::resize(vk::Device& device, const Film& film) {
+  m_tilesX = (film.width() + 15) / 16;
+  m_tilesY = (film.height() + 15) / 16;
+  const size_t tileCount = size_t(m_tilesX) * m_tilesY;
+  auto errors = makeReadback(device, tileCount * sizeof(shared::TileError), "film.tileErrors");
+  if (!errors) return errors.error();
+  m_tileErrors = errors.take();
+  auto counts = makeReadback(device, (tileCount + 1) * sizeof(uint32_t), "film.tileCounts");
+  if (!counts) return counts.error();
+  m_tileCounts = counts.take();
+  return {};
 }
 
 Result<FilmError> FilmStatistics::estimate(vk::Device& device, const Film& film) {

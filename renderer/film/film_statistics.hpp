@@ -16,6 +16,8 @@ struct FilmError {
 class FilmStatistics {
  public:
   static Result<FilmStatistics> create(vk::Device& device, const Film& film);
+  /// For a film of another size; the pipelines stay.
+  Result<void> resize(vk::Device& device, const Film& film);
   /// Waits for the device.
   Result<FilmError> estimate(vk::Device& device, const Film& film);
   /// Writes into `pixelList` (storage, one word a pixel) the pixels whose neighbourhood has not `minSamples` yet or a relative

@@ -15,6 +15,16 @@ uint32_t tiles(uint32_t pixels) { return (pixels + 15) / 16; }
 
 Result<Resolver> Resolver::create(vk::Device& device, const Film& film) {
   Resolver resolver;
+  if (auto made = resolver.resize(device, film); !made) return made.error();
+  const auto bindings = gpu::joined(film.bindings(), {vk::storage(BINDING_OUTPUT, resolver.m_output)});
+  auto pass = gpu::Pass::create(device, "resolve", bindings, sizeof(shared::ResolvePush));
+  if (!pass) return pass.error();
+  resolver.m_pass = pass.take();
+  if (auto warm = gpu::runNow(device, [&](vk::CommandRecorder& r) { resolver.m_pass.warmUp(r, bindings); }); !warm) return warm.error();
+  return resolver;
+}
+
+Result<void> Resolver::resize(vk::Device& device, const Film& film) {
   vk::BufferDesc desc;
   desc.size = size_t(film.pixelCount()) * 4;
   desc.memory = vk::MemoryKind::readback;
@@ -22,13 +32,8 @@ Result<Resolver> Resolver::create(vk::Device& device, const Film& film) {
   desc.owner = "film";
   auto output = vk::Buffer::create(device, desc);
   if (!output) return output.error();
-  resolver.m_output = output.take();
-  const auto bindings = gpu::joined(film.bindings(), {vk::storage(BINDING_OUTPUT, resolver.m_output)});
-  auto pass = gpu::Pass::create(device, "resolve", bindings, sizeof(shared::ResolvePush));
-  if (!pass) return pass.error();
-  resolver.m_pass = pass.take();
-  if (auto warm = gpu::runNow(device, [&](vk::CommandRecorder& r) { resolver.m_pass.warmUp(r, bindings); }); !warm) return warm.error();
-  return resolver;
+  m_output = output.take();
+  return {};
 }
 
 Result<std::vector<uint8_t>> Resolver::resolve(vk::Device& device, const Film& film, const ResolveSettings& settings,

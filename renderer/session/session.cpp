@@ -17,10 +17,10 @@ Result<std::unique_ptr<Session>> Session::create(vk::Device& device, Scene scene
 
 Result<bool> Session::step() {
   Impl& s = *m_impl;
-  // At least one picture of every state is shown, or dragging would show nothing.
-  if (s.frameOfState || s.idle())
+  // At least one picture of every state is shown to who watches, or dragging would show nothing.
+  if (s.frameOfState || s.idle() || !s.watched)
     if (auto done = s.drainMailbox(); !done) return done.error();
-  if (s.idle() && !s.showAgain && s.frameOfState) return false;
+  if (s.idle() && !s.frameIsDue(nowSeconds())) return false;
   if (!s.idle())
     if (auto done = s.work(s.config.quantumSeconds); !done) return done.error();
   if (auto done = s.answerWaits(); !done) return done.error();

@@ -101,23 +101,24 @@ Result<void> Session::Impl::handle(EditRequest& request) {
       replies.push(ErrorReply{request.from, answer});
       return {};
     }
-  ChangeSet changes = apply(scene, resolve, request.edits);
+  // A new size is the one edit that may fail when it is applied: it comes first, so that nothing else has changed then.
+  const SetImageSize* size = nullptr;
+  for (const Edit& edit : request.edits)
+    if (const auto* set = std::get_if<SetImageSize>(&edit)) size = set;
+  const bool sizeChanged = size && (size->width != config.width || size->height != config.height);
+  if (sizeChanged)
+    if (auto resized = resize(size->width, size->height); !resized) {
+      replies.push(ErrorReply{request.from, resized.error()});
+      return {};
+    }
+  const ChangeSet changes = apply(scene, resolve, request.edits);
   CostClass parameterCost = CostClass::none;
-  bool sizeChanged = false;
-  for (const Edit& edit : request.edits) {
+  for (const Edit& edit : request.edits)
     if (const auto* set = std::get_if<SetTechnique>(&edit)) {
       auto cost = applyTechnique(*set);
       if (!cost) return cost.error();
       parameterCost = std::max(parameterCost, *cost);
-    } else if (const auto* size = std::get_if<SetImageSize>(&edit)) {
-      if (size->width == config.width && size->height == config.height) continue;
-      if (auto resized = resize(size->width, size->height); !resized) {
-        replies.push(ErrorReply{request.from, resized.error()});
-        return {};
-      }
-      sizeChanged = true;
     }
-  }
   const RestartPlan plan = planRestart(changes, parameterCost, sizeChanged);
   if (plan.syncScene) ++sceneRevision;
   if (changes.view || sizeChanged) ++viewRevision;

@@ -75,13 +75,18 @@ Result<void> Session::Impl::chooseTechnique(const std::string& name) {
 Result<void> Session::Impl::resize(uint32_t width, uint32_t height) {
   auto newFilm = Film::create(device, width, height);
   if (!newFilm) return newFilm.error();
-  auto newResolver = Resolver::create(device, *newFilm);
-  if (!newResolver) return newResolver.error();
-  auto newStatistics = FilmStatistics::create(device, *newFilm);
-  if (!newStatistics) return newStatistics.error();
+  if (!resolver) {
+    auto newResolver = Resolver::create(device, *newFilm);
+    if (!newResolver) return newResolver.error();
+    resolver = newResolver.take();
+    auto newStatistics = FilmStatistics::create(device, *newFilm);
+    if (!newStatistics) return newStatistics.error();
+    statistics = newStatistics.take();
+  } else {
+    if (auto done = resolver->resize(device, *newFilm); !done) return done;
+    if (auto done = statistics->resize(device, *newFilm); !done) return done;
+  }
   film = newFilm.take();
-  resolver = newResolver.take();
-  statistics = newStatistics.take();
   config.width = width;
   config.height = height;
   return {};

@@ -56,7 +56,7 @@ class PathTracing final : public Technique {
   vk::Buffer m_order, m_active, m_counters;
   PixelOrder m_pixelOrder;
   std::optional<FilmStatistics> m_statistics;
-  const Film* m_film = nullptr;  ///< the lists were made for it
+  uint32_t m_listWidth = 0, m_listHeight = 0;  ///< [pixel] the lists were made for
   std::vector<std::string> m_ran, m_leftOut;
   WorkRate m_rate{kInitialPathsPerSecond};
 
@@ -67,7 +67,7 @@ class PathTracing final : public Technique {
 
 Result<void> PathTracing::prepare(const TechniqueContext& context, const SceneNeeds& needs, bool mayCompile) {
   describeNeeds(needs);
-  if (m_film != &context.film)
+  if (m_listWidth != context.film.width() || m_listHeight != context.film.height())
     if (auto made = makeLists(context); !made) return made;
   const bool stale = !m_tailored || (mayCompile && m_tailoredNeeds != needs);
   m_useGeneral = !stale && !gpu::covers(m_tailoredNeeds, needs);
@@ -130,10 +130,15 @@ Result<void> PathTracing::makeLists(const TechniqueContext& context) {
   if (!counters) return counters.error();
   m_counters = counters.take();
   if (auto cleared = vk::fill(context.device, m_counters, 0, desc.size, 0); !cleared) return cleared;
-  auto statistics = FilmStatistics::create(context.device, context.film);
-  if (!statistics) return statistics.error();
-  m_statistics = statistics.take();
-  m_film = &context.film;
+  if (m_statistics) {
+    if (auto done = m_statistics->resize(context.device, context.film); !done) return done;
+  } else {
+    auto statistics = FilmStatistics::create(context.device, context.film);
+    if (!statistics) return statistics.error();
+    m_statistics = statistics.take();
+  }
+  m_listWidth = context.film.width();
+  m_listHeight = context.film.height();
   return {};
 }
 
