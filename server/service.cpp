@@ -1,5 +1,7 @@
 #include "server/service.hpp"
 
+#include <algorithm>
+
 #include "renderer/base/clock.hpp"
 #include "renderer/base/log.hpp"
 #include "server/convert.hpp"
@@ -8,6 +10,14 @@ namespace limn::server {
 namespace {
 
 constexpr double kStatusSeconds = 0.25;
+
+/// The schema's code for one of ours; those of the scene loader say more than clients need to tell apart.
+std::string wireCode(const std::string& code) {
+  const auto& known = protocol::kErrorCodes;
+  if (std::find(known.begin(), known.end(), code) != known.end()) return code;
+  if (code == "path") return std::string(protocol::kErrorIo);
+  return code.starts_with("bad-") ? std::string(protocol::kErrorBadFile) : std::string(protocol::kErrorInternal);
+}
 
 }  // namespace
 
@@ -120,7 +130,7 @@ void Service::sendError(ClientSession& session, uint32_t seq, const Error& error
   ++m_counters.errors;
   protocol::ErrorMessage message;
   if (seq != 0) message.seq = seq;
-  message.code = error.code;
+  message.code = wireCode(error.code);
   message.message = error.message;
   if (!error.place.empty()) message.place = error.place;
   send(session, message);

@@ -11,39 +11,29 @@
 namespace limn::server {
 namespace {
 
-std::string milliseconds(double begin) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.0f ms", (nowSeconds() - begin) * 1e3);
-  return text;
-}
-
 Result<std::unique_ptr<vk::Device>> openDevice(const DaemonOptions& options) {
-  const double begin = nowSeconds();
   vk::DeviceOptions wanted;
   wanted.select = options.device;
   wanted.cacheDir = options.stateDir.string();
-  auto device = vk::Device::open(wanted);
-  if (device) logInfo("device " + (*device)->info().name + ", driver " + (*device)->info().driver + ", opened in " + milliseconds(begin));
-  return device;
+  return vk::Device::open(wanted);
 }
 
 Result<std::unique_ptr<Session>> makeSession(vk::Device& device, const DaemonOptions& options, Mailbox& mailbox, FrameSlot& frames,
                                              StatusQueue& replies) {
-  double begin = nowSeconds();
+  const double begin = nowSeconds();
   Result<LoadedScene> loaded = loadGltf(options.scene, {options.assetRoot, {}});
   if (!loaded) return loaded.error();
-  logInfo(options.scene.filename().string() + ": " + std::to_string(loaded->report.triangles) + " triangles, read in " + milliseconds(begin));
+  char seconds[32];
+  std::snprintf(seconds, sizeof seconds, "%.2f s", nowSeconds() - begin);
+  logInfo(options.scene.filename().string() + ": " + std::to_string(loaded->report.triangles) + " triangles, read in " + seconds);
   for (const LoadReport::Item& item : loaded->report.unsupported) logWarning("not supported: " + item.feature + ": " + item.note);
   for (const std::string& note : loaded->report.notes) logInfo(note);
 
-  begin = nowSeconds();
   SessionConfig config;
   config.width = options.width;
   config.height = options.height;
   config.technique = options.technique;
-  auto session = Session::create(device, std::move(loaded->scene), std::move(loaded->report), config, mailbox, frames, replies);
-  if (session) logInfo("built and warmed up in " + milliseconds(begin) + (device.pipelineCacheLoaded() ? ", pipelines from the cache" : ", pipelines compiled"));
-  return session;
+  return Session::create(device, std::move(loaded->scene), std::move(loaded->report), config, mailbox, frames, replies);
 }
 
 }  // namespace

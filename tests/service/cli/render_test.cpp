@@ -1,0 +1,125 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "protocol/json_value.hpp"
+#include "renderer/film/exr.hpp"
+#include "tests/service/cli/run_program.hpp"
+
+namespace limn {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAre;
+
+const std::string kScene = LIMN_BUILD_DIR "/scenes/cornell-box.glb";
+
+/// Real renders, small ones. Pipelines are kept between them, so that only the first compiles.
+class Render : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    s_scratch = new test::ScratchDirectory;
+    setenv("XDG_CACHE_HOME", s_scratch->file("cache").c_str(), 1);
+  }
+  static void TearDownTestSuite() { delete s_scratch; }
+
+  static std::string file(const std::string& name) { return s_scratch->file(name); }
+
+  static test::ProgramRun run(const std::string& output, std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {"render", kScene, "--output", file(output), "--size", "24x20"});
+    return test::runProgram(LIMN_PROGRAM, flags);
+  }
+  /// The film of a render that must succeed.
+  static FilmImage film(const std::string& output, const std::vector<std::string>& flags) {
+    const test::ProgramRun done = run(output, flags);
+    EXPECT_EQ(done.exitCode, 0) << done.err;
+    Result<FilmImage> image = readExr(file(output));
+    return image ? image.take() : FilmImage{};
+  }
+  static std::string metadata(const FilmImage& image, const std::string& key) {
+    for (const auto& [name, value] : image.metadata)
+      if (name == key) return value;
+    return "";
+  }
+
+ private:
+  static inline test::ScratchDirectory* s_scratch = nullptr;
+};
+
+std::vector<std::string> layerNames(const FilmImage& image) {
+  std::vector<std::string> names;
+  for (const FilmLayer& layer : image.layers) names.push_back(layer.name);
+  return names;
+}
+
+TEST_F(Render, PartsMergeToTheWholeUpToRounding) {
+  const FilmImage whole = film("whole.exr", {"--spp", "8"});
+  film("a.exr", {"--samples", "0:3"});
+  film("b.exr", {"--samples", "3:8"});
+  const test::ProgramRun merge =
+      test::runProgram(LIMN_PROGRAM, {"merge", file("b.exr"), file("a.exr"), "--output", file("merged.exr")});
+  ASSERT_EQ(merge.exitCode, 0) << merge.err;
+  const FilmImage merged = readExr(file("merged.exr")).value();
+  EXPECT_EQ(merged.find("samples")->data, whole.find("samples")->data);
+  EXPECT_EQ(metadata(merged, "limn:samples"), "0:8");
+  // Two roundings of a float (2^-24) a sample; cancellation cannot be worse, radiance is not negative.
+  for (const char* layer : {"beauty", "direct"})
+    for (size_t i = 0; i < whole.find(layer)->data.size(); ++i) {
+      const float expected = whole.find(layer)->data[i];
+      ASSERT_NEAR(merged.find(layer)->data[i], expected, 16.0 * 6e-8 * std::abs(expected)) << layer << " " << i;
+    }
+}
+
+TEST_F(Render, TheSameCommandGivesTheSameBitsAndAnotherSeedOthers) {
+  const FilmImage first = film("first.exr", {"--steps", "2", "--seed", "5"});
+  const FilmImage again = film("again.exr", {"--steps", "2", "--seed", "5"});
+  const FilmImage other = film("other.exr", {"--steps", "2", "--seed", "6"});
+  for (const FilmLayer& layer : first.layers) EXPECT_EQ(layer.data, again.find(layer.name)->data) << layer.name;
+  EXPECT_NE(first.find("beauty")->data, other.find("beauty")->data);
+}
+
+TEST_F(Render, StatisticsCheckpointsAndLayersAreAsAsked) {
+  const FilmImage image = film("s.exr", {"--spp", "4", "--aov", "depth", "--stats", file("s.json"), "--checkpoints",
+                                         "0.000001,1000"});
+  EXPECT_THAT(layerNames(image), UnorderedElementsAre("beauty", "depth"));
+  EXPECT_EQ(metadata(image, "limn:samples"), "0:4");
+  EXPECT_EQ(metadata(readExr(file("s.0.000001s.exr")).value(), "limn:samples"), "0:1");
+  EXPECT_EQ(metadata(readExr(file("s.1000s.exr")).value(), "limn:samples"), "0:4");
+
+  const Result<protocol::JsonValue> stats = protocol::parseJson(test::readText(file("s.json")), 8);
+  ASSERT_TRUE(stats.ok()) << stats.error().text();
+  EXPECT_EQ(*stats->find("samples")->string(), "0:4");
+  EXPECT_EQ(*stats->find("sceneHash")->string(), metadata(image, "limn:sceneHash"));
+  for (const char* part : {"load", "build", "warmUp", "render", "write"})
+    EXPECT_GT(*stats->find("seconds")->find(part)->number(), 0.0) << part;
+  EXPECT_GT(*stats->find("raysPerSecond")->number(), 0.0);
+  EXPECT_FALSE(stats->find("ran")->array()->empty());
+  EXPECT_FALSE(stats->find("leftOut")->array()->empty());
+  EXPECT_FALSE(stats->find("memory")->object()->empty());
+  const protocol::JsonValue::Array& checkpoints = *stats->find("checkpoints")->array();
+  ASSERT_EQ(checkpoints.size(), 2u);
+  EXPECT_LT(*checkpoints[0].find("seconds")->number(), *checkpoints[1].find("seconds")->number());
+}
+
+TEST_F(Render, APngIsWritten) {
+  const test::ProgramRun done = run("view.png", {"--steps", "1"});
+  ASSERT_EQ(done.exitCode, 0) << done.err;
+  EXPECT_TRUE(test::readText(file("view.png")).starts_with("\x89PNG"));
+}
+
+TEST_F(Render, WhatCannotBeRenderedExits1WithOneLineAndLeavesNoFile) {
+  const test::ProgramRun camera = run("camera.exr", {"--camera", "nobody"});
+  EXPECT_EQ(camera.exitCode, 1);
+  EXPECT_THAT(camera.err, HasSubstr("no camera 'nobody'"));
+  EXPECT_EQ(std::count(camera.err.begin(), camera.err.end(), '\n'), 1) << camera.err;
+  EXPECT_FALSE(std::filesystem::exists(file("camera.exr")));
+  const test::ProgramRun absent =
+      test::runProgram(LIMN_PROGRAM, {"render", "absent.glb", "--output", file("absent.exr")});
+  EXPECT_EQ(absent.exitCode, 1);
+  EXPECT_THAT(absent.err, HasSubstr("absent.glb"));
+}
+
+}  // namespace
+}  // namespace limn
