@@ -15,8 +15,6 @@ class Resolver {
   static Result<Resolver> create(vk::Device& device, const Film& film);
   /// For a film of another size. Nothing is compiled.
   Result<void> resize(vk::Device& device, const Film& film);
-  /// For a film of another size; the pipeline stays.
-  Result<void> resize(vk::Device& device, const Film& film);
   /// RGBA8, sRGB-encoded, row 0 on top. `stride` is the grid on which every pixel has a sample [pixel]; 0: no filling.
   /// `view` is one of shared::kView... . Waits for the device.
   Result<std::vector<uint8_t>> resolve(vk::Device& device, const Film& film, const ResolveSettings& settings, uint32_t stride,

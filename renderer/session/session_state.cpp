@@ -136,7 +136,7 @@ Result<void> Session::Impl::writeCamera() {
 }
 
 TechniqueContext Session::Impl::context() const {
-  return {device, mirror, bvh, camera, *film, config.seed, config.firstSample, config.sampleCount};
+  return {device, mirror, bvh, camera, *film, *statistics, config.seed, config.firstSample, config.sampleCount};
 }
 
 Result<void> Session::Impl::restartFilm(CostClass cost) {

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "renderer/base/clock.hpp"
-#include "renderer/film/film_statistics.hpp"
 #include "renderer/gpu/needs_constants.hpp"
 #include "renderer/gpu/pass.hpp"
 #include "renderer/techniques/pixel_order.hpp"
@@ -19,6 +18,8 @@ constexpr uint32_t kWorkgroup = 64;
 constexpr double kInitialPathsPerSecond = 2e5;  // of a slow two-core machine; the first quanta correct it
 
 /// Samples a pixel takes in a pass: one while a first picture is wanted, then enough to keep vectors busy across path ends.
+/// No more: Mesa 22.3's software device silently ends every loop of an invocation after 65,535 turns of all of them together
+/// (measured), and four paths through a large scene may take a fifth of that.
 uint32_t samplesOfPass(uint32_t pass) { return pass < 2 ? 1 : pass < 3 ? 2 : 4; }
 
 class PathTracing final : public Technique {
@@ -37,6 +38,7 @@ class PathTracing final : public Technique {
  private:
   std::vector<vk::Binding> bindings(const TechniqueContext& context, const vk::Buffer& list) const;
   Result<void> makeLists(const TechniqueContext& context);
+  Result<void> makeCounters(vk::Device& device);
   Result<void> beginPass(const TechniqueContext& context);
   Result<void> dispatch(const TechniqueContext& context, uint32_t count);
   void readCounters();
@@ -55,7 +57,6 @@ class PathTracing final : public Technique {
   bool m_useGeneral = false;
   vk::Buffer m_order, m_active, m_counters;
   PixelOrder m_pixelOrder;
-  std::optional<FilmStatistics> m_statistics;
   uint32_t m_listWidth = 0, m_listHeight = 0;  ///< [pixel] the lists were made for
   std::vector<std::string> m_ran, m_leftOut;
   WorkRate m_rate{kInitialPathsPerSecond};
@@ -123,23 +124,23 @@ Result<void> PathTracing::makeLists(const TechniqueContext& context) {
   auto active = vk::Buffer::create(context.device, desc);
   if (!active) return active.error();
   m_active = active.take();
-  desc.name = "pathTracing.counters";
-  desc.size = shared::kCounterWords * sizeof(uint32_t);
-  desc.memory = vk::MemoryKind::readback;
-  auto counters = vk::Buffer::create(context.device, desc);
-  if (!counters) return counters.error();
-  m_counters = counters.take();
-  if (auto cleared = vk::fill(context.device, m_counters, 0, desc.size, 0); !cleared) return cleared;
-  if (m_statistics) {
-    if (auto done = m_statistics->resize(context.device, context.film); !done) return done;
-  } else {
-    auto statistics = FilmStatistics::create(context.device, context.film);
-    if (!statistics) return statistics.error();
-    m_statistics = statistics.take();
-  }
+  if (!m_counters)
+    if (auto made = makeCounters(context.device); !made) return made;
   m_listWidth = context.film.width();
   m_listHeight = context.film.height();
   return {};
+}
+
+Result<void> PathTracing::makeCounters(vk::Device& device) {
+  vk::BufferDesc desc;
+  desc.owner = "path-tracing";
+  desc.name = "pathTracing.counters";
+  desc.size = shared::kCounterWords * sizeof(uint32_t);
+  desc.memory = vk::MemoryKind::readback;
+  auto counters = vk::Buffer::create(device, desc);
+  if (!counters) return counters.error();
+  m_counters = counters.take();
+  return vk::fill(device, m_counters, 0, desc.size, 0);
 }
 
 std::vector<vk::Binding> PathTracing::bindings(const TechniqueContext& context, const vk::Buffer& list) const {
@@ -162,9 +163,9 @@ Result<void> PathTracing::beginPass(const TechniqueContext& context) {
   m_passPixels = context.film.pixelCount();
   m_passSamples = std::min(samplesOfPass(m_pass), sampleLimit(context) - m_samplesDone);
   if (!m_adaptive || m_samplesDone < m_minSamples) return {};
-  auto error = m_statistics->estimate(context.device, context.film);
+  auto error = context.statistics.estimate(context.device, context.film);
   if (!error) return error.error();
-  auto active = m_statistics->selectPixels(context.device, context.film, m_active, m_minSamples, m_noiseThreshold, error->meanValue);
+  auto active = context.statistics.selectPixels(context.device, context.film, m_active, m_minSamples, m_noiseThreshold, error->meanValue);
   if (!active) return active.error();
   m_passPixels = *active;
   return {};
@@ -245,7 +246,7 @@ const TechniqueInfo& pathTracingInfo() {
   static const TechniqueInfo kInfo{
       "path-tracing", "Path tracing", "Unbiased; converges to the truth, slowly where light arrives by rare paths.", false,
       {{"maxBounces", "Indirect bounces; 0 is direct light only", "bounces", ParameterType::integer, 0, 1024, 32, CostClass::regather},
-       {"rouletteStart", "Bounces before Russian roulette may end a path", "bounces", ParameterType::integer, 1, 1024, 3, CostClass::regather},
+       {"rouletteStart", "Bounces before Russian roulette may end a path", "bounces", ParameterType::integer, 1, 32, 3, CostClass::regather},
        {"adaptive", "Stop pixels that are done", "", ParameterType::boolean, 0, 1, 1, CostClass::regather},
        {"noiseThreshold", "Relative standard error at which a pixel is done", "1", ParameterType::real, 0.0005, 1, 0.01, CostClass::regather},
        {"minSamples", "Samples before a pixel may stop", "samples", ParameterType::integer, 4, 4096, 16, CostClass::regather},

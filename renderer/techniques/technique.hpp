@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "renderer/film/film.hpp"
+#include "renderer/film/film_statistics.hpp"
 #include "renderer/gpu/device_scene.hpp"
 #include "renderer/scene/scene_needs.hpp"
 #include "renderer/techniques/technique_info.hpp"
@@ -19,6 +20,7 @@ struct TechniqueContext {
   const SceneBvh& bvh;
   const vk::Buffer& camera;          ///< one shared::CameraData
   const Film& film;
+  FilmStatistics& statistics;
   uint32_t seed = 0;
   uint32_t firstSample = 0;          ///< index of the first sample taken of a pixel
   uint32_t sampleLimit = 0;          ///< samples of every pixel at which to stop; 0: the technique's own end

@@ -25,7 +25,7 @@ void main() {
         vec3 even = filmHalf[pixel].rgb;
         vec3 odd = (mean.rgb * mean.w - even * evenCount) / oddCount;
         vec3 e = (even - odd) * (sqrt(evenCount * oddCount) / mean.w);
-        vec3 relative = e * e / (mean.rgb * mean.rgb + 0.01 * push.meanLuminance * push.meanLuminance);
+        vec3 relative = e * e / (mean.rgb * mean.rgb + 0.01 * push.meanLuminance * push.meanLuminance + 1e-30);
         own.y = (relative.r + relative.g + relative.b) * (1.0 / 3.0);
         own.z = 1.0;
       }
