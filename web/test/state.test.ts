@@ -36,7 +36,7 @@ describe('Model', () => {
 });
 
 const picture = (presentedMs: number, steps: number, estimatedError: number, dropped = false) => ({
-  header: { steps, estimatedError, errorLow: 0, errorHigh: 1, msSinceEdit: 50 } as FrameHeader, dropped, presentedMs, receivedMs: presentedMs, decodeMs: 1, bytes: 500,
+  header: { steps, meanSamples: steps, estimatedError, errorLow: 0, errorHigh: 1, msSinceEdit: 50 } as FrameHeader, dropped, presentedMs, receivedMs: presentedMs, decodeMs: 1, bytes: 500,
 }) as FrameReport;
 
 describe('Statistics', () => {

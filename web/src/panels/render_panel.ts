@@ -75,7 +75,7 @@ export class RenderPanel {
   private showTechnique(scene: SceneMessage): void {
     this.technique?.set(scene.technique);
     const info = this.model.hello?.techniques.find((t) => t.name === scene.technique);
-    setText(this.about, info ? `${info.description} ${info.biased ? 'Biased.' : 'Unbiased.'}` : '');
+    setText(this.about, info ? info.description + (info.biased ? ' Biased: it converges to something near the truth.' : '') : '');
     if (info && this.knobsOf !== info.name) {
       this.knobsOf = info.name;
       this.parameters.clear();

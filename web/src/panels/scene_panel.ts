@@ -5,6 +5,9 @@ import { formatCount } from '../ui/format';
 import { Tree, type TreeItem } from '../ui/tree';
 import { nameOf } from './names';
 
+// Groups longer than this begin folded, so that the others are seen.
+const kLongGroup = 12;
+
 /** The scene as a list: the keyboard's equal of picking. Also what loading left out, and a field to load another file. */
 export class ScenePanel {
   private readonly tree: Tree;
@@ -77,7 +80,8 @@ function treeOf(scene: SceneMessage): TreeItem[] {
     return { key: `node:${i}`, label: nameOf(node?.name, 'Node', i), note, children: (children.get(i) ?? []).map(nodeItem) };
   };
   const leaf = (key: string, label: string, note?: string): TreeItem => ({ key, label, note, children: [] });
-  const group = (key: string, label: string, items: TreeItem[]): TreeItem[] => (items.length > 0 ? [{ key, label, children: items }] : []);
+  const group = (key: string, label: string, items: TreeItem[]): TreeItem[] =>
+    (items.length > 0 ? [{ key, label, children: items, foldedAtFirst: items.length > kLongGroup }] : []);
   const glows = (emission: readonly number[]) => emission.some((c) => c > 0);
   return [
     ...group('group:lights', 'Lights', [
@@ -85,8 +89,8 @@ function treeOf(scene: SceneMessage): TreeItem[] {
       ...scene.materials.flatMap((m, i) => (glows(m.emission) ? [leaf(`glow:${i}`, nameOf(m.name, 'Material', i), 'surface')] : [])),
       leaf('environment:0', 'Environment', scene.environment.hasImage ? 'image' : 'constant'),
     ]),
-    ...group('group:materials', 'Materials', scene.materials.map((m, i) => leaf(`material:${i}`, nameOf(m.name, 'Material', i), glows(m.emission) ? 'glows' : undefined))),
     ...group('group:cameras', 'Cameras', scene.cameras.map((c, i) => leaf(`camera:${i}`, nameOf(c.name, 'Camera', i)))),
     ...group('group:nodes', 'Objects', (children.get(undefined) ?? []).map(nodeItem)),
+    ...group('group:materials', 'Materials', scene.materials.map((m, i) => leaf(`material:${i}`, nameOf(m.name, 'Material', i), glows(m.emission) ? 'glows' : undefined))),
   ];
 }

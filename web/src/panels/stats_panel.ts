@@ -17,7 +17,8 @@ export class StatsPanel {
   private readonly values = new Map<Row, HTMLElement>();
   private readonly plot = new ErrorPlot();
   private readonly stages = h('div', { class: 'stages' });
-  private readonly passes = h('p', { class: 'facts' });
+  private readonly ran = h('p', { class: 'facts' });
+  private readonly leftOut = h('p', { class: 'facts' });
   private readonly device = h('p', { class: 'facts' });
   private readonly memory = h('p', { class: 'facts' });
 
@@ -30,7 +31,7 @@ export class StatsPanel {
     }
     root.append(
       h('h3', {}, 'Error over time'), this.plot.element, list, this.device,
-      h('details', { class: 'more', open: true }, h('summary', {}, 'Where the time went'), this.stages, this.passes, this.memory));
+      h('details', { class: 'more', open: true }, h('summary', {}, 'Where the time went'), this.stages, this.ran, this.leftOut, this.memory));
     setInterval(() => this.refresh(), 250);
   }
 
@@ -76,8 +77,8 @@ export class StatsPanel {
   private showStatus(status: Status): void {
     this.set('Rays', status.idle ? 'at rest' : `${formatNumber(status.raysPerSecond / 1e6, 3)} M/s`);
     this.set('Discarded samples', formatCount(status.discardedSamples));
-    const out = status.leftOut.length > 0 ? `; left out: ${status.leftOut.join(', ')}` : '';
-    setText(this.passes, status.ran.length > 0 ? `Ran: ${status.ran.join(', ')}${out}` : '');
+    setText(this.ran, status.ran.length > 0 ? `Ran: ${status.ran.join(', ')}` : '');
+    setText(this.leftOut, status.leftOut.length > 0 ? `Left out: ${status.leftOut.join(', ')}` : '');
     const memory = Object.entries(status.memory).map(([owner, bytes]) => `${owner} ${formatBytes(bytes)}`);
     setText(this.memory, memory.length > 0 ? `Memory: ${memory.join(', ')}` : '');
   }

@@ -66,7 +66,9 @@ export class Statistics {
   }
 
   private isRestart(header: FrameHeader): boolean {
-    return !this.last || header.steps < this.last.header.steps;
+    if (!this.last) return true;
+    // While something is dragged no pass is ever finished; then the samples tell.
+    return header.steps < this.last.header.steps || header.meanSamples < this.last.header.meanSamples;
   }
 
   private beginSeries(frame: FrameReport): void {

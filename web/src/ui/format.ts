@@ -29,6 +29,7 @@ export function formatSeconds(seconds: number): string {
 
 export function formatMilliseconds(ms: number): string {
   if (!Number.isFinite(ms)) return kMissing;
+  if (ms >= 9999.5) return formatSeconds(ms / 1000);
   return ms < 10 ? `${ms.toFixed(1)} ms` : `${Math.round(ms)} ms`;
 }
 

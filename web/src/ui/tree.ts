@@ -6,6 +6,8 @@ export interface TreeItem {
   /** Short word behind the label: "spot", "mesh". */
   note?: string | undefined;
   children: TreeItem[];
+  /** Shown folded until somebody unfolds it or selects something in it. */
+  foldedAtFirst?: boolean;
 }
 
 /** An ARIA tree: one tab stop, arrows walk and fold, Enter and Space select. */
@@ -13,6 +15,7 @@ export class Tree {
   readonly element: HTMLUListElement;
   private rows = new Map<string, HTMLLIElement>();
   private folded = new Set<string>();
+  private known = new Set<string>();
   private selected: string | null = null;
 
   constructor(label: string, private readonly onSelect: (key: string) => void) {
@@ -42,6 +45,8 @@ export class Tree {
 
   private makeRow(item: TreeItem, level: number): HTMLLIElement {
     const hasChildren = item.children.length > 0;
+    if (item.foldedAtFirst && !this.known.has(item.key)) this.folded.add(item.key);
+    this.known.add(item.key);
     const row = h('li', {
       role: 'treeitem', 'data-key': item.key, 'aria-level': level, 'aria-selected': false, tabindex: -1,
       'aria-expanded': hasChildren ? !this.folded.has(item.key) : null,

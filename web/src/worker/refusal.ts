@@ -36,7 +36,7 @@ export async function probeServer(socketUrl: string): Promise<{ reason: string; 
     if (reply.status === 401 || reply.status === 403) return { reason: 'the token is missing or wrong', hopeless: true };
     const text = (await reply.text()).trim().slice(0, 120);
     if (reply.status === 503) return { reason: text || 'the server is not ready', hopeless: false };
-    return { reason: 'the server is up but refuses the connection: wrong token, foreign origin, or too many clients', hopeless: false };
+    return { reason: 'the server is up but refuses the connection: no valid token, a foreign origin, or too many clients', hopeless: false };
   } catch {
     return null;
   }
