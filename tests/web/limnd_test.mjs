@@ -1,5 +1,7 @@
 // The page in Chromium against a real limnd. Needs LIMND and LIMN_SCENE.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { basename } from 'node:path';
 import { after, before, test } from 'node:test';
 import { drag, frameHeader, gridDifference, meanGrid, openPage, pick, sceneOf, settle, startBrowser, waitFor } from './browser.mjs';
 import { freePort, startDaemon } from './daemon.mjs';
@@ -117,6 +119,34 @@ test('exposure changes the picture without a restart', async () => {
   assert.ok((await frameHeader(page)).steps >= steps, 'sampling was restarted');
   assert.ok(gridDifference(gridBefore, await meanGrid(page)) > 6);
   assert.notEqual((await hash()).sha256, shown.sha256);
+});
+
+test('the film is saved as an OpenEXR file', async () => {
+  const waiting = page.waitForEvent('download');
+  await page.getByRole('button', { name: 'Save EXR' }).click();
+  const download = await waiting;
+  assert.match(download.suggestedFilename(), /\.exr$/);
+  const bytes = readFileSync(await download.path());
+  assert.equal(bytes.readUInt32LE(0), 20000630, 'the magic number of OpenEXR');
+});
+
+test('a file that is not there is told, and the scene stays', async () => {
+  const { hash: before } = await sceneOf(page);
+  await page.getByLabel('Scene file under the asset root').fill('no-such-file.glb');
+  await page.getByRole('button', { name: 'Load' }).click();
+  await waitFor(page, () => document.querySelector('#ledger .bad') !== null);
+  assert.equal((await sceneOf(page)).hash, before);
+});
+
+test('loading a scene shows it from its own camera', async () => {
+  const { sceneRevision } = await frameHeader(page);
+  await page.getByLabel('Scene file under the asset root').fill(basename(process.env.LIMN_SCENE));
+  await page.getByRole('button', { name: 'Load' }).click();
+  await waitFor(page, (revision) => window.limn.model.scene.cause === 'loaded' && window.limn.frame.header.sceneRevision > revision, sceneRevision);
+  assert.match(await page.locator('#ledger').textContent(), /Loaded in/);
+  const { view } = await sceneOf(page);
+  assert.deepEqual(await page.evaluate(() => window.limn.rig.current().eye), view.eye);
+  await pickDiffuse();
 });
 
 test('killing and restarting the daemon recovers', async () => {
