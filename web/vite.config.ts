@@ -11,6 +11,13 @@ export default defineConfig({
     chunkSizeWarningLimit: 300,
   },
   worker: { format: 'es' },
-  server: { host: '127.0.0.1' },
+  // `npm run dev` shows the page of the source tree; what it asks for goes on to a server at limnd's usual address.
+  server: {
+    host: '127.0.0.1',
+    proxy: {
+      '/ws': { target: 'ws://127.0.0.1:8080', ws: true },
+      '/readyz': 'http://127.0.0.1:8080',
+    },
+  },
   test: { include: ['test/**/*.test.ts'], environment: 'node' },
 } as Parameters<typeof defineConfig>[0]);

@@ -9,7 +9,13 @@ export const requireFromWeb = createRequire(new URL('../../web/package.json', im
 const { chromium } = requireFromWeb('playwright-core');
 
 const kFlags = [
-  '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
+  '--no-sandbox',
+  '--disable-gpu',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
 ];
 // A software renderer beside a busy compiler needs this long for its first picture.
 export const kPatienceMs = 60_000;
@@ -18,7 +24,11 @@ export const kPatienceMs = 60_000;
 export async function startBrowser(options = {}) {
   const profile = mkdtempSync(join(tmpdir(), 'limn-chromium-'));
   const context = await chromium.launchPersistentContext(profile, {
-    executablePath: process.env.LIMN_CHROMIUM ?? '/usr/bin/chromium', headless: true, args: kFlags, viewport: { width: 1280, height: 800 }, ...options,
+    executablePath: process.env.LIMN_CHROMIUM ?? '/usr/bin/chromium',
+    headless: true,
+    args: kFlags,
+    viewport: { width: 1280, height: 800 },
+    ...options,
   });
   context.setDefaultTimeout(kPatienceMs);
   return {
@@ -37,7 +47,11 @@ export async function openPage(context, url) {
   page.on('pageerror', (error) => page.errors.push(error.message));
   page.on('console', (message) => {
     // While a server is down the browser itself reports every refused connection.
-    if (message.type() === 'error' && !/ERR_CONNECTION_REFUSED|WebSocket connection to|Failed to load resource/.test(message.text())) page.errors.push(message.text());
+    if (
+      message.type() === 'error' &&
+      !/ERR_CONNECTION_REFUSED|WebSocket connection to|Failed to load resource/.test(message.text())
+    )
+      page.errors.push(message.text());
   });
   await page.goto(url);
   await waitFor(page, () => window.limn?.frame != null);
@@ -45,44 +59,59 @@ export async function openPage(context, url) {
 }
 
 /** Waits until `condition` is true in the page. */
-export const waitFor = (page, condition, argument) => page.waitForFunction(condition, argument, { timeout: kPatienceMs, polling: 50 });
+export const waitFor = (page, condition, argument) =>
+  page.waitForFunction(condition, argument, { timeout: kPatienceMs, polling: 50 });
 
 /** The newest presented frame's header. */
 export const frameHeader = (page) => page.evaluate(() => window.limn.frame.header);
 
 /** Waits for a picture that holds the newest edit and has at least `steps` passes. */
 export async function settle(page, steps) {
-  await waitFor(page, (least) => {
-    const { frame, acks } = window.limn;
-    const last = acks.at(-1);
-    return (!last || frame.header.ackSeq >= last.seq) && frame.header.steps >= least;
-  }, steps);
+  await waitFor(
+    page,
+    (least) => {
+      const { frame, acks } = window.limn;
+      const last = acks.at(-1);
+      return (!last || frame.header.ackSeq >= last.seq) && frame.header.steps >= least;
+    },
+    steps,
+  );
 }
 
 /** Mean colours of a grid of areas over the canvas: what changes when the picture changes, and not with its noise. */
-export const meanGrid = (page, columns = 8, rows = 6) => page.evaluate(async ([columns, rows]) => {
-  const { fullWidth, fullHeight } = window.limn.frame.header;
-  const [width, height] = [Math.floor(fullWidth / columns), Math.floor(fullHeight / rows)];
-  const cells = [];
-  for (let i = 0; i < columns * rows; i++) {
-    cells.push(await window.limn.mean({ x: (i % columns) * width, y: Math.floor(i / columns) * height, width, height }));
-  }
-  return cells;
-}, [columns, rows]);
+export const meanGrid = (page, columns = 8, rows = 6) =>
+  page.evaluate(
+    async ([columns, rows]) => {
+      const { fullWidth, fullHeight } = window.limn.frame.header;
+      const [width, height] = [Math.floor(fullWidth / columns), Math.floor(fullHeight / rows)];
+      const cells = [];
+      for (let i = 0; i < columns * rows; i++) {
+        cells.push(
+          await window.limn.mean({ x: (i % columns) * width, y: Math.floor(i / columns) * height, width, height }),
+        );
+      }
+      return cells;
+    },
+    [columns, rows],
+  );
 
 /** Largest difference of two grids, in sRGB steps of 255. */
 export const gridDifference = (a, b) => Math.max(...a.flatMap((cell, i) => cell.map((c, k) => Math.abs(c - b[i][k]))));
 
 /** The window's point over a pixel of the picture given in shares of its width and height. */
-export const pointInPicture = (page, u, v) => page.evaluate(([u, v]) => {
-  const box = document.getElementById('stage').getBoundingClientRect();
-  const { fullWidth, fullHeight } = window.limn.frame.header;
-  const scale = Math.min(box.width / fullWidth, box.height / fullHeight);
-  return {
-    x: box.left + box.width / 2 + (u - 0.5) * fullWidth * scale,
-    y: box.top + box.height / 2 + (v - 0.5) * fullHeight * scale,
-  };
-}, [u, v]);
+export const pointInPicture = (page, u, v) =>
+  page.evaluate(
+    ([u, v]) => {
+      const box = document.getElementById('stage').getBoundingClientRect();
+      const { fullWidth, fullHeight } = window.limn.frame.header;
+      const scale = Math.min(box.width / fullWidth, box.height / fullHeight);
+      return {
+        x: box.left + box.width / 2 + (u - 0.5) * fullWidth * scale,
+        y: box.top + box.height / 2 + (v - 0.5) * fullHeight * scale,
+      };
+    },
+    [u, v],
+  );
 
 /** Drags with the mouse over shares of the picture. */
 export async function drag(page, from, to, options = {}) {

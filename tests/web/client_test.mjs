@@ -2,7 +2,18 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { startFakeServer } from '../../web/dev/fake_server.mjs';
-import { drag, gridDifference, meanGrid, openPage, pick, pointInPicture, sceneOf, settle, startBrowser, waitFor } from './browser.mjs';
+import {
+  drag,
+  gridDifference,
+  meanGrid,
+  openPage,
+  pick,
+  pointInPicture,
+  sceneOf,
+  settle,
+  startBrowser,
+  waitFor,
+} from './browser.mjs';
 import { Peer } from './peer.mjs';
 
 let server;
@@ -33,7 +44,11 @@ test('a drag sends at most one camera edit a display frame, and the picture neve
   const presented = await page.evaluate(() => window.limn.presented);
   presented.slice(1).forEach((header, i) => {
     const earlier = presented[i];
-    assert.ok(header.frameId > earlier.frameId && header.viewRevision >= earlier.viewRevision && header.sceneRevision >= earlier.sceneRevision);
+    assert.ok(
+      header.frameId > earlier.frameId &&
+        header.viewRevision >= earlier.viewRevision &&
+        header.sceneRevision >= earlier.sceneRevision,
+    );
   });
   for (const client of server.world.clients) assert.ok(client.inFlight.size <= 2);
 });
@@ -47,13 +62,19 @@ test('the right button and Shift pan, the wheel dollies', async () => {
   const { x, y } = await pointInPicture(page, 0.5, 0.5);
   await page.mouse.move(x, y);
   await page.mouse.wheel(0, -240);
-  await waitFor(page, (before) => Math.hypot(...window.limn.rig.current().eye.map((c, i) => c - window.limn.rig.current().target[i])) < before, distance(panned));
+  await waitFor(
+    page,
+    (before) =>
+      Math.hypot(...window.limn.rig.current().eye.map((c, i) => c - window.limn.rig.current().target[i])) < before,
+    distance(panned),
+  );
 });
 
 test('one finger turns, two fingers come nearer', async () => {
   const touch = await browser.context.newCDPSession(page);
   const { x, y } = await pointInPicture(page, 0.5, 0.5);
-  const send = (type, points) => touch.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([px, py], id) => ({ x: px, y: py, id })) });
+  const send = (type, points) =>
+    touch.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([px, py], id) => ({ x: px, y: py, id })) });
   const start = await pose();
   await send('touchStart', [[x, y]]);
   for (let i = 1; i <= 5; i++) await send('touchMove', [[x + i * 10, y]]);
@@ -61,10 +82,23 @@ test('one finger turns, two fingers come nearer', async () => {
   await waitFor(page, (eye) => window.limn.rig.current().eye[0] !== eye[0], start.eye);
   const turned = await pose();
   assert.ok(Math.abs(distance(turned) - distance(start)) < 1e-6, 'one finger does not dolly');
-  await send('touchStart', [[x - 20, y], [x + 20, y]]);
-  for (let i = 1; i <= 5; i++) await send('touchMove', [[x - 20 - i * 10, y], [x + 20 + i * 10, y]]);
+  await send('touchStart', [
+    [x - 20, y],
+    [x + 20, y],
+  ]);
+  for (let i = 1; i <= 5; i++)
+    await send('touchMove', [
+      [x - 20 - i * 10, y],
+      [x + 20 + i * 10, y],
+    ]);
   await send('touchEnd', []);
-  await waitFor(page, (before) => Math.hypot(...window.limn.rig.current().eye.map((c, i) => c - window.limn.rig.current().target[i])) < before * 0.8, distance(turned));
+  await waitFor(
+    page,
+    (before) =>
+      Math.hypot(...window.limn.rig.current().eye.map((c, i) => c - window.limn.rig.current().target[i])) <
+      before * 0.8,
+    distance(turned),
+  );
 });
 
 test('keys act on the focused picture only', async () => {
@@ -96,7 +130,11 @@ test('the list is walked with keys and opens the same panel', async () => {
   assert.equal(await page.locator('#inspector').getByLabel('Outer cone angle', { exact: true }).count(), 1);
   await page.keyboard.press('ArrowUp');
   await page.keyboard.press('Enter');
-  assert.equal(await page.locator('#inspector').getByLabel('Outer cone angle', { exact: true }).count(), 0, 'a point light has no cone');
+  assert.equal(
+    await page.locator('#inspector').getByLabel('Outer cone angle', { exact: true }).count(),
+    0,
+    'a point light has no cone',
+  );
 });
 
 test('a light edit tells its cost class and its latency', async () => {
@@ -104,7 +142,9 @@ test('a light edit tells its cost class and its latency', async () => {
   const field = page.locator('#inspector').getByLabel('Intensity', { exact: true });
   await field.fill('90');
   await field.press('Enter');
-  await waitFor(page, () => /Lamp, intensity: relight, \d+\.\d\d s to first pixels/.test(document.getElementById('ledger').textContent));
+  await waitFor(page, () =>
+    /Lamp, intensity: relight, \d+\.\d\d s to first pixels/.test(document.getElementById('ledger').textContent),
+  );
   await settle(page, 4);
   assert.ok(gridDifference(before, await meanGrid(page)) > 10);
 });
@@ -116,7 +156,9 @@ test('angles are shown in degrees and sent as a quaternion', async () => {
   await field.press('Enter');
   await waitFor(page, () => window.limn.outcomes.at(-1)?.label.includes('rotation'));
   await settle(page, 1);
-  server.world.scene.nodes[1].rotation.forEach((c, i) => assert.ok(Math.abs(c - [0, 0, Math.SQRT1_2, Math.SQRT1_2][i]) < 1e-6));
+  server.world.scene.nodes[1].rotation.forEach((c, i) =>
+    assert.ok(Math.abs(c - [0, 0, Math.SQRT1_2, Math.SQRT1_2][i]) < 1e-6),
+  );
 });
 
 test('a refused edit is told and taken back', async () => {
@@ -143,7 +185,9 @@ test('a number outside the announced range is not sent', async () => {
 test('an edit by somebody else shows in the open panel', async () => {
   const peer = await Peer.connect(server.port);
   peer.send({ op: 'set', target: 'material', material: 2, roughness: 0.42 });
-  await page.waitForFunction(() => [...document.querySelectorAll('#inspector input.number')].some((input) => input.value === '0.42'));
+  await page.waitForFunction(() =>
+    [...document.querySelectorAll('#inspector input.number')].some((input) => input.value === '0.42'),
+  );
   peer.close();
 });
 
@@ -152,7 +196,10 @@ test('another technique brings its own parameters', async () => {
   await technique.selectOption('flat');
   await page.locator('#render').getByLabel('Gain', { exact: true }).waitFor();
   assert.equal(await page.locator('#render').getByLabel('Max bounces', { exact: true }).count(), 0);
-  await waitFor(page, () => window.limn.model.scene.technique === 'flat' && window.limn.model.scene.parameters.gain === 1);
+  await waitFor(
+    page,
+    () => window.limn.model.scene.technique === 'flat' && window.limn.model.scene.parameters.gain === 1,
+  );
   await technique.selectOption('path-tracing');
   await page.locator('#render').getByLabel('Max bounces', { exact: true }).waitFor();
 });
@@ -166,12 +213,18 @@ test('another picture size arrives on the canvas', async () => {
 
 test('a camera of the file moves the view', async () => {
   await page.locator('[role=treeitem][data-key="camera:0"]').click();
-  await waitFor(page, () => Math.abs(window.limn.rig.current().eye[1] - 1.4) < 1e-9 && window.limn.rig.current().eye[2] === 5);
+  await waitFor(
+    page,
+    () => Math.abs(window.limn.rig.current().eye[1] - 1.4) < 1e-9 && window.limn.rig.current().eye[2] === 5,
+  );
 });
 
 test('every input has a name, and the live region speaks', async () => {
-  const nameless = await page.evaluate(() => [...document.querySelectorAll('input, select, button')]
-    .filter((e) => !e.getAttribute('aria-label') && !e.labels?.length && !e.textContent.trim()).map((e) => e.outerHTML));
+  const nameless = await page.evaluate(() =>
+    [...document.querySelectorAll('input, select, button')]
+      .filter((e) => !e.getAttribute('aria-label') && !e.labels?.length && !e.textContent.trim())
+      .map((e) => e.outerHTML),
+  );
   assert.deepEqual(nameless, []);
   const ids = await page.evaluate(() => [...document.querySelectorAll('[id]')].map((e) => e.id));
   assert.equal(new Set(ids).size, ids.length);
@@ -200,7 +253,7 @@ test('a server that refuses the socket is told from one that is away', async () 
   server = await startFakeServer({ port });
   await page.getByRole('button', { name: 'Retry now' }).click();
   await waitFor(page, () => window.limn.model.connection.kind === 'connected');
-  assert.equal((await sceneOf(page)).materials[2].roughness, 0.3, 'the new server\'s truth is shown');
+  assert.equal((await sceneOf(page)).materials[2].roughness, 0.3, "the new server's truth is shown");
 });
 
 test('nothing went wrong in the page', async () => {

@@ -22,10 +22,15 @@ export async function startDaemon(port, extra = []) {
   const command = LIMND.endsWith('.mjs') ? [process.execPath, [LIMND, ...args]] : [LIMND, args];
   const child = spawn(...command, { stdio: ['ignore', 'pipe', 'pipe'] });
   let log = '';
-  for (const stream of [child.stdout, child.stderr]) stream.on('data', (data) => { log = (log + data).slice(-20_000); });
+  for (const stream of [child.stdout, child.stderr])
+    stream.on('data', (data) => {
+      log = (log + data).slice(-20_000);
+    });
   const ended = new Promise((resolve) => child.once('exit', (code, signal) => resolve(signal ?? code)));
   const daemon = {
-    child, ended, log: () => log,
+    child,
+    ended,
+    log: () => log,
     kill: async (signal) => {
       child.kill(signal);
       return ended;
@@ -38,7 +43,9 @@ export async function startDaemon(port, extra = []) {
 async function ready(daemon, port) {
   const until = Date.now() + kReadyMs;
   let ending = null;
-  daemon.ended.then((how) => { ending = how; });
+  daemon.ended.then((how) => {
+    ending = how;
+  });
   while (Date.now() < until) {
     if (ending !== null) throw new Error(`the daemon ended with ${ending}:\n${daemon.log()}`);
     const reply = await fetch(`http://127.0.0.1:${port}/readyz`).catch(() => null);

@@ -3,7 +3,18 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { basename } from 'node:path';
 import { after, before, test } from 'node:test';
-import { drag, frameHeader, gridDifference, meanGrid, openPage, pick, sceneOf, settle, startBrowser, waitFor } from './browser.mjs';
+import {
+  drag,
+  frameHeader,
+  gridDifference,
+  meanGrid,
+  openPage,
+  pick,
+  sceneOf,
+  settle,
+  startBrowser,
+  waitFor,
+} from './browser.mjs';
 import { freePort, startDaemon } from './daemon.mjs';
 import { Peer } from './peer.mjs';
 
@@ -70,7 +81,8 @@ test('dragging turns the camera and changes the picture', async () => {
   const told = await peer.next((m) => m.op === 'scene');
   peer.close();
   assert.notDeepEqual(told.view.eye, view.eye);
-  for (let i = 0; i < 3; i++) assert.ok(Math.abs(told.view.eye[i] - pose.eye[i]) < 1e-5, 'the server holds the page\'s camera');
+  for (let i = 0; i < 3; i++)
+    assert.ok(Math.abs(told.view.eye[i] - pose.eye[i]) < 1e-5, "the server holds the page's camera");
 });
 
 test('keys turn the camera back to the first view', async () => {
@@ -87,7 +99,11 @@ test('the material panel changes a colour in the canvas', async () => {
   const area = await areaAround(spot);
   const greenBefore = greenShare(await page.evaluate((a) => window.limn.mean(a), area));
   const outcomes = await page.evaluate(() => window.limn.outcomes.length);
-  await page.locator('#inspector').getByLabel(/^Base color/).first().fill('#10f020');
+  await page
+    .locator('#inspector')
+    .getByLabel(/^Base color/)
+    .first()
+    .fill('#10f020');
   await waitFor(page, (count) => window.limn.outcomes.slice(count).some((o) => o.latencyMs !== undefined), outcomes);
   const line = await page.locator('#ledger').textContent();
   assert.match(line, /(relight|re-gather|rebuild), \d+\.\d\d s to first pixels/);
@@ -98,7 +114,10 @@ test('the material panel changes a colour in the canvas', async () => {
 
 test('the canvas at rest equals the pixels of the server', async () => {
   await typeNumber('#render', 'Max samples', kSamplesAtRest);
-  await waitFor(page, () => window.limn.frame.header.phase === 'converged' && (window.limn.frame.header.flags & 6) === 6);
+  await waitFor(
+    page,
+    () => window.limn.frame.header.phase === 'converged' && (window.limn.frame.header.flags & 6) === 6,
+  );
   const shown = await hash();
   const header = await frameHeader(page);
   const peer = await Peer.connect(port);
@@ -114,7 +133,10 @@ test('exposure changes the picture without a restart', async () => {
   const shown = await hash();
   const gridBefore = await meanGrid(page);
   await typeNumber('#render', 'Exposure', 1.5);
-  await waitFor(page, () => window.limn.frame.header.ackSeq >= window.limn.acks.at(-1).seq && (window.limn.frame.header.flags & 4) !== 0);
+  await waitFor(
+    page,
+    () => window.limn.frame.header.ackSeq >= window.limn.acks.at(-1).seq && (window.limn.frame.header.flags & 4) !== 0,
+  );
   assert.equal(await page.evaluate(() => window.limn.acks.at(-1).cost), 'display-only');
   assert.ok((await frameHeader(page)).steps >= steps, 'sampling was restarted');
   assert.ok(gridDifference(gridBefore, await meanGrid(page)) > 6);
@@ -142,7 +164,11 @@ test('loading a scene shows it from its own camera', async () => {
   const { sceneRevision } = await frameHeader(page);
   await page.getByLabel('Scene file under the asset root').fill(basename(process.env.LIMN_SCENE));
   await page.getByRole('button', { name: 'Load' }).click();
-  await waitFor(page, (revision) => window.limn.model.scene.cause === 'loaded' && window.limn.frame.header.sceneRevision > revision, sceneRevision);
+  await waitFor(
+    page,
+    (revision) => window.limn.model.scene.cause === 'loaded' && window.limn.frame.header.sceneRevision > revision,
+    sceneRevision,
+  );
   assert.match(await page.locator('#ledger').textContent(), /Loaded in/);
   const { view } = await sceneOf(page);
   assert.deepEqual(await page.evaluate(() => window.limn.rig.current().eye), view.eye);
@@ -152,7 +178,13 @@ test('loading a scene shows it from its own camera', async () => {
 test('killing and restarting the daemon recovers', async () => {
   await daemon.kill('SIGKILL');
   await waitFor(page, () => window.limn.model.connection.kind === 'reconnecting');
-  assert.equal(await page.locator('#stage').getAttribute('class').then((c) => c.split(' ').includes('stale')), true);
+  assert.equal(
+    await page
+      .locator('#stage')
+      .getAttribute('class')
+      .then((c) => c.split(' ').includes('stale')),
+    true,
+  );
   assert.match(await page.locator('#stale').textContent(), /^Stale picture/);
   assert.ok((await hash()).distinct > 16, 'the last picture stays');
 
@@ -183,7 +215,7 @@ test('nothing went wrong in the page', async () => {
   assert.deepEqual(await page.evaluate(() => window.limn.faults), []);
 });
 
-/** Picks until the point shows a lit, opaque, rough material that does not glow; resolves to its place in the picture. */
+/** Picks until the point shows a lit, opaque, rough material that does not glow; resolves to its place. */
 async function pickDiffuse() {
   const tried = [];
   for (const v of [0.8, 0.65, 0.5, 0.35]) {

@@ -48,7 +48,10 @@ export class Peer {
     const frame = await this.next((m) => m.op === 'frame' && m.isFinal);
     const png = PNG.sync.read(frame.payload);
     return {
-      width: png.width, height: png.height, sceneRevision: frame.sceneRevision, viewRevision: frame.viewRevision,
+      width: png.width,
+      height: png.height,
+      sceneRevision: frame.sceneRevision,
+      viewRevision: frame.viewRevision,
       sha256: createHash('sha256').update(png.data).digest('hex'),
     };
   }
@@ -67,7 +70,11 @@ export class Peer {
 function readFrame(data) {
   const flags = data.readUInt8(7);
   return {
-    op: 'frame', frameId: data.readUInt32LE(12), sceneRevision: data.readUInt32LE(20), viewRevision: data.readUInt32LE(24),
-    isFinal: data.readUInt8(6) === kPng && (flags & (kLossless | kFinal)) === (kLossless | kFinal), payload: data.subarray(kHeaderBytes),
+    op: 'frame',
+    frameId: data.readUInt32LE(12),
+    sceneRevision: data.readUInt32LE(20),
+    viewRevision: data.readUInt32LE(24),
+    isFinal: data.readUInt8(6) === kPng && (flags & (kLossless | kFinal)) === (kLossless | kFinal),
+    payload: data.subarray(kHeaderBytes),
   };
 }

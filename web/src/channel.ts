@@ -16,7 +16,12 @@ export type ConnectionState =
   | { kind: 'paused' };
 
 /** A part of the canvas [pixel]. */
-export interface Area { x: number; y: number; width: number; height: number }
+export interface Area {
+  x: number;
+  y: number;
+  width: number;
+  height: number;
+}
 
 export interface PixelHash {
   width: number;

@@ -35,14 +35,23 @@ const statistics = new Statistics();
 const announcer = new Announcer((text) => setText(byId('announcer'), text));
 const ledger = new Ledger(byId('ledger'));
 const stage = new Stage(byId('stage'), byId('stale'), byId('marker'), model);
-const desk = new EditDesk({ post: (ticket, message) => link.send(ticket, message), requestFrame, now: nowMs, onOutcome });
+const desk = new EditDesk({
+  post: (ticket, message) => link.send(ticket, message),
+  requestFrame,
+  now: nowMs,
+  onOutcome,
+});
 const rig = new CameraRig({
   send: (pose) => desk.camera(viewFromPose(pose)),
   requestFrame,
   reducedMotion: () => matchMedia('(prefers-reduced-motion: reduce)').matches,
 });
 const link = new StreamLink(byId<HTMLCanvasElement>('picture'), socketUrl(), tokenOfAddress(), {
-  onState, onMessage, onFrame, onFile, onFault,
+  onState,
+  onMessage,
+  onFrame,
+  onFile,
+  onFault,
   onSent: (ticket, seq, reason) => desk.onSent(ticket, seq, reason),
 });
 const hook = makeTestHook(model, statistics, rig, link);
@@ -58,7 +67,10 @@ new RenderPanel(byId('render'), model, {
   edit,
   setFieldOfView: (yfov) => whenConnected(() => rig.setFieldOfView(yfov)),
   saveExr: () => request({ op: 'save' }),
-  stageSize: () => ({ width: stage.element.clientWidth * devicePixelRatio, height: stage.element.clientHeight * devicePixelRatio }),
+  stageSize: () => ({
+    width: stage.element.clientWidth * devicePixelRatio,
+    height: stage.element.clientHeight * devicePixelRatio,
+  }),
 });
 bindControls(stage.element, {
   pictureHeight: () => stage.shown().height,
@@ -139,17 +151,34 @@ function onState(state: ConnectionState): void {
 
 function onMessage(message: ServerMessage): void {
   switch (message.op) {
-    case 'hello': model.setHello(message); break;
-    case 'scene': model.setScene(message); break;
-    case 'status': model.setStatus(message); break;
-    case 'ack': remember(hook.acks, message); desk.onAck(message); break;
-    case 'picked': remember(hook.picks, message); onPicked(message); break;
-    case 'loaded': ledger.say(`Loaded in ${formatNumber(message.seconds, 3)} s`); break;
-    case 'bye': ledger.say(`The server says good-bye: ${message.reason}`, true); break;
+    case 'hello':
+      model.setHello(message);
+      break;
+    case 'scene':
+      model.setScene(message);
+      break;
+    case 'status':
+      model.setStatus(message);
+      break;
+    case 'ack':
+      remember(hook.acks, message);
+      desk.onAck(message);
+      break;
+    case 'picked':
+      remember(hook.picks, message);
+      onPicked(message);
+      break;
+    case 'loaded':
+      ledger.say(`Loaded in ${formatNumber(message.seconds, 3)} s`);
+      break;
+    case 'bye':
+      ledger.say(`The server says good-bye: ${message.reason}`, true);
+      break;
     case 'error':
       if (!desk.onError(message)) ledger.say(`${message.message}${message.place ? ` (${message.place})` : ''}`, true);
       break;
-    default: break;
+    default:
+      break;
   }
 }
 
@@ -164,7 +193,10 @@ function onPicked(picked: Picked): void {
   const material = picked.material === undefined ? {} : { material: picked.material };
   model.select({ kind: 'node', node: picked.node, ...material });
   const node = nameOf(model.scene?.nodes[picked.node]?.name, 'Node', picked.node);
-  const made = picked.material === undefined ? 'the default material' : nameOf(model.scene?.materials[picked.material]?.name, 'Material', picked.material);
+  const made =
+    picked.material === undefined
+      ? 'the default material'
+      : nameOf(model.scene?.materials[picked.material]?.name, 'Material', picked.material);
   ledger.say(`Picked: ${node}, made of ${made}`);
   announcer.say(`${node}, made of ${made}`);
 }

@@ -16,8 +16,16 @@ export class StreamLink {
   private readonly answers = new Map<number, (answer: never) => void>();
   private nextQuestion = 1;
 
-  constructor(canvas: HTMLCanvasElement, url: string, token: string | null, private readonly hooks: LinkHooks) {
-    this.worker = new Worker(new URL('./worker/stream_worker.ts', import.meta.url), { type: 'module', name: 'limn stream' });
+  constructor(
+    canvas: HTMLCanvasElement,
+    url: string,
+    token: string | null,
+    private readonly hooks: LinkHooks,
+  ) {
+    this.worker = new Worker(new URL('./worker/stream_worker.ts', import.meta.url), {
+      type: 'module',
+      name: 'limn stream',
+    });
     this.worker.onmessage = ({ data }: MessageEvent<ToPage>) => this.receive(data);
     this.worker.onerror = (event) => hooks.onFault(`the stream worker failed: ${event.message}`);
     const offscreen = canvas.transferControlToOffscreen();
@@ -64,14 +72,30 @@ export class StreamLink {
 
   private receive(data: ToPage): void {
     switch (data.type) {
-      case 'state': this.hooks.onState(data.state); break;
-      case 'message': this.hooks.onMessage(data.message); break;
-      case 'sent': this.hooks.onSent(data.ticket, data.seq, data.reason ?? ''); break;
-      case 'frame': this.hooks.onFrame(data.frame); break;
-      case 'file': this.hooks.onFile(data.header, data.bytes); break;
-      case 'fault': this.hooks.onFault(data.text); break;
-      case 'hash': this.answer(data.ticket, data.hash); break;
-      case 'mean': this.answer(data.ticket, data.rgb); break;
+      case 'state':
+        this.hooks.onState(data.state);
+        break;
+      case 'message':
+        this.hooks.onMessage(data.message);
+        break;
+      case 'sent':
+        this.hooks.onSent(data.ticket, data.seq, data.reason ?? '');
+        break;
+      case 'frame':
+        this.hooks.onFrame(data.frame);
+        break;
+      case 'file':
+        this.hooks.onFile(data.header, data.bytes);
+        break;
+      case 'fault':
+        this.hooks.onFault(data.text);
+        break;
+      case 'hash':
+        this.answer(data.ticket, data.hash);
+        break;
+      case 'mean':
+        this.answer(data.ticket, data.rgb);
+        break;
     }
   }
 }

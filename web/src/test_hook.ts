@@ -26,14 +26,24 @@ export interface TestHook {
 }
 
 declare global {
-  interface Window { limn: TestHook }
+  interface Window {
+    limn: TestHook;
+  }
 }
 
 const kKept = 100;
 
 export function makeTestHook(model: Model, statistics: Statistics, rig: CameraRig, link: StreamLink): TestHook {
   return {
-    model, statistics, rig, frame: null, presented: [], acks: [], outcomes: [], picks: [], faults: [],
+    model,
+    statistics,
+    rig,
+    frame: null,
+    presented: [],
+    acks: [],
+    outcomes: [],
+    picks: [],
+    faults: [],
     hash: () => link.hash(),
     mean: (area) => link.mean(area),
   };

@@ -6,14 +6,21 @@ import { kFrameFinal, kFrameFull, kFrameLossless, type FrameHeader } from '../sr
 const kLossless = kFrameFull | kFrameLossless | kFrameFinal;
 const header = (frameId: number, sceneRevision = 1, viewRevision = 1, flags = kFrameFull) =>
   ({ frameId, sceneRevision, viewRevision, flags }) as FrameHeader;
-const frame = (...args: Parameters<typeof header>): EncodedFrame => ({ header: header(...args), payload: new Uint8Array(), receivedMs: 0 });
+const frame = (...args: Parameters<typeof header>): EncodedFrame => ({
+  header: header(...args),
+  payload: new Uint8Array(),
+  receivedMs: 0,
+});
 
 /** A queue whose decoder waits for `finish`. */
 function makeQueue() {
   const log: string[] = [];
   const open: (() => void)[] = [];
   const queue = new DecodeQueue<number>({
-    decode: (f) => new Promise((resolve, reject) => open.push(() => (f.payload.length > 0 ? reject(new Error('bad')) : resolve(f.header.frameId)))),
+    decode: (f) =>
+      new Promise((resolve, reject) =>
+        open.push(() => (f.payload.length > 0 ? reject(new Error('bad')) : resolve(f.header.frameId))),
+      ),
     present: async (f) => void log.push(`shown ${f.header.frameId}`),
     discard: (picture) => void log.push(`discarded ${picture}`),
     acknowledge: (f, dropped) => void log.push(`${dropped ? 'dropped' : 'acked'} ${f.header.frameId}`),

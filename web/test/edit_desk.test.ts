@@ -39,7 +39,8 @@ describe('EditDesk', () => {
     desk.set('Roughness', { target: 'material', material: 3, roughness: 0.9 });
     displayFrame(100);
     expect(posted.map((p) => p.message)).toEqual([
-      { op: 'set', ...roughness(0.2) }, { op: 'set', target: 'material', material: 2, metallic: 1 },
+      { op: 'set', ...roughness(0.2) },
+      { op: 'set', target: 'material', material: 2, metallic: 1 },
       { op: 'set', target: 'material', material: 3, roughness: 0.9 },
     ]);
   });
@@ -64,7 +65,10 @@ describe('EditDesk', () => {
     expect(desk.onFrame(picture(7, 1150, true))).toEqual([]);
     expect(desk.onFrame(picture(8, 1180))).toEqual([180]);
     expect(desk.onFrame(picture(9, 1300))).toEqual([]);
-    expect(outcomes.map(describeOutcome)).toEqual(['Roughness: relight …', 'Roughness: relight, 0.18 s to first pixels']);
+    expect(outcomes.map(describeOutcome)).toEqual([
+      'Roughness: relight …',
+      'Roughness: relight, 0.18 s to first pixels',
+    ]);
   });
 
   it('asks for no picture where nothing changed', () => {
@@ -83,11 +87,15 @@ describe('EditDesk', () => {
     desk.onSent(posted[0]!.ticket, 4);
     desk.onSent(posted[1]!.ticket, null, 'there is no connection');
     desk.onSent(posted[2]!.ticket, 5);
-    expect(desk.onError({ op: 'error', seq: 4, code: 'out-of-range', message: 'too much', place: 'seq 4 /intensity' })).toBe(true);
+    expect(
+      desk.onError({ op: 'error', seq: 4, code: 'out-of-range', message: 'too much', place: 'seq 4 /intensity' }),
+    ).toBe(true);
     expect(desk.onError({ op: 'error', seq: 99, code: 'busy', message: 'somebody else' })).toBe(false);
     desk.onDisconnected();
     expect(outcomes.map(describeOutcome)).toEqual([
-      'B: not sent: there is no connection', 'A: too much (seq 4 /intensity)', 'C: the connection broke before the server answered',
+      'B: not sent: there is no connection',
+      'A: too much (seq 4 /intensity)',
+      'C: the connection broke before the server answered',
     ]);
   });
 

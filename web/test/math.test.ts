@@ -24,15 +24,21 @@ describe('sRGB', () => {
 });
 
 describe('rotation', () => {
-  it.each<[Vec3]>([[[0, 0, 0]], [[30, -40, 50]], [[-170, 10, 95]], [[0, 89, 0]], [[120, -60, -30]]])('angles %j come back', (angles) => {
-    eulerFromQuat(quatFromEuler(angles)).forEach((a, i) => expect(a).toBeCloseTo(angles[i] ?? NaN, 8));
-  });
-  it.each<[Vec3]>([[[20, 90, 0]], [[20, -90, 35]], [[-50, 90, 170]]])('angles %j at the pole give the same rotation back', (angles) => {
-    const q = quatFromEuler(angles);
-    const again = quatFromEuler(eulerFromQuat(q));
-    const cosine = q.reduce((sum, c, i) => sum + c * (again[i] ?? 0), 0);
-    expect(Math.abs(cosine)).toBeCloseTo(1, 6);
-  });
+  it.each<[Vec3]>([[[0, 0, 0]], [[30, -40, 50]], [[-170, 10, 95]], [[0, 89, 0]], [[120, -60, -30]]])(
+    'angles %j come back',
+    (angles) => {
+      eulerFromQuat(quatFromEuler(angles)).forEach((a, i) => expect(a).toBeCloseTo(angles[i] ?? NaN, 8));
+    },
+  );
+  it.each<[Vec3]>([[[20, 90, 0]], [[20, -90, 35]], [[-50, 90, 170]]])(
+    'angles %j at the pole give the same rotation back',
+    (angles) => {
+      const q = quatFromEuler(angles);
+      const again = quatFromEuler(eulerFromQuat(q));
+      const cosine = q.reduce((sum, c, i) => sum + c * (again[i] ?? 0), 0);
+      expect(Math.abs(cosine)).toBeCloseTo(1, 6);
+    },
+  );
   it('turns x to y by a quarter turn about z', () => {
     const rotation = quatFromEuler([0, 0, 90]);
     const { x } = localPlacement({ name: '', translation: [0, 0, 0], rotation: [...rotation], scale: [2, 1, 1] });

@@ -3,7 +3,9 @@ import { dolly, forwardOf, frameBox, heightAt, orbit, pan, rightOf, type Pose } 
 import { cross, dot, length, normalize, sub, type Vec3 } from '../src/math/vec3';
 
 const pose: Pose = {
-  eye: [0, 0, 5], target: [0, 0, 0], up: [0, 1, 0],
+  eye: [0, 0, 5],
+  target: [0, 0, 0],
+  up: [0, 1, 0],
   lens: { perspective: true, yfov: 1, ymag: 1, znear: 0.01 },
 };
 const distance = (a: Vec3, b: Vec3) => length(sub(a, b));

@@ -3,13 +3,22 @@ import { handleKey, type GestureTarget } from '../src/camera/controls';
 import type { Pose } from '../src/camera/orbit';
 import { CameraRig } from '../src/camera/rig';
 
-const pose: Pose = { eye: [0, 0, 5], target: [0, 0, 0], up: [0, 1, 0], lens: { perspective: true, yfov: 1, ymag: 1, znear: 0.01 } };
+const pose: Pose = {
+  eye: [0, 0, 5],
+  target: [0, 0, 0],
+  up: [0, 1, 0],
+  lens: { perspective: true, yfov: 1, ymag: 1, znear: 0.01 },
+};
 const box = { low: [-1, -1, -1] as const, high: [1, 1, 1] as const };
 
 function makeRig(reducedMotion = true) {
   const sent: Pose[] = [];
   let queue: ((now: number) => void)[] = [];
-  const rig = new CameraRig({ send: (p) => sent.push(p), requestFrame: (callback) => queue.push(callback), reducedMotion: () => reducedMotion });
+  const rig = new CameraRig({
+    send: (p) => sent.push(p),
+    requestFrame: (callback) => queue.push(callback),
+    reducedMotion: () => reducedMotion,
+  });
   rig.adopt(pose, box);
   /** One display frame at a time [ms]. */
   const frame = (now: number) => {
@@ -79,14 +88,30 @@ describe('CameraRig', () => {
 
 describe('handleKey', () => {
   const calls: string[] = [];
-  const note = (name: string) => (...args: number[]) => void calls.push([name, ...args.map(Math.sign)].join(' '));
+  const note =
+    (name: string) =>
+    (...args: number[]) =>
+      void calls.push([name, ...args.map(Math.sign)].join(' '));
   const target: GestureTarget = {
-    pictureHeight: () => 100, orbit: note('orbit'), pan: note('pan'), dolly: (f) => void calls.push(f < 1 ? 'nearer' : 'farther'),
-    click: note('click'), frame: note('frame'), centerPicked: note('center'), reset: note('reset'),
+    pictureHeight: () => 100,
+    orbit: note('orbit'),
+    pan: note('pan'),
+    dolly: (f) => void calls.push(f < 1 ? 'nearer' : 'farther'),
+    click: note('click'),
+    frame: note('frame'),
+    centerPicked: note('center'),
+    reset: note('reset'),
   };
   it.each([
-    ['ArrowRight', false, 'orbit 1 0'], ['ArrowUp', false, 'orbit 0 -1'], ['ArrowRight', true, 'pan -1 0'], ['ArrowDown', true, 'pan 0 1'],
-    ['+', false, 'nearer'], ['-', false, 'farther'], ['f', false, 'frame'], ['r', false, 'reset'], ['c', false, 'center'],
+    ['ArrowRight', false, 'orbit 1 0'],
+    ['ArrowUp', false, 'orbit 0 -1'],
+    ['ArrowRight', true, 'pan -1 0'],
+    ['ArrowDown', true, 'pan 0 1'],
+    ['+', false, 'nearer'],
+    ['-', false, 'farther'],
+    ['f', false, 'frame'],
+    ['r', false, 'reset'],
+    ['c', false, 'center'],
   ])('%s, shift %s: %s', (key, shift, expected) => {
     calls.length = 0;
     expect(handleKey(key, shift, target)).toBe(true);

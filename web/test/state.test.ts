@@ -10,9 +10,22 @@ import { formatBytes, formatNumber, formatSeconds, titleFromName } from '../src/
 import { decades } from '../src/ui/plot';
 
 const scene = {
-  op: 'scene', cause: 'joined', name: 'a.glb', materials: [{ name: 'red', roughness: 1 }, { name: 'blue', roughness: 1 }],
-  lights: [{ name: 'lamp', intensity: 1 }], nodes: [{ name: 'n', translation: [0, 0, 0] }], environment: { rotation: 0 },
-  resolve: { exposure: 0, toneMap: 'aces' }, technique: 'path-tracing', parameters: { maxBounces: 8 }, view: { yfov: 1 }, width: 4, height: 4,
+  op: 'scene',
+  cause: 'joined',
+  name: 'a.glb',
+  materials: [
+    { name: 'red', roughness: 1 },
+    { name: 'blue', roughness: 1 },
+  ],
+  lights: [{ name: 'lamp', intensity: 1 }],
+  nodes: [{ name: 'n', translation: [0, 0, 0] }],
+  environment: { rotation: 0 },
+  resolve: { exposure: 0, toneMap: 'aces' },
+  technique: 'path-tracing',
+  parameters: { maxBounces: 8 },
+  view: { yfov: 1 },
+  width: 4,
+  height: 4,
 } as unknown as SceneMessage;
 
 describe('Model', () => {
@@ -20,7 +33,9 @@ describe('Model', () => {
     const edited = withEdit(scene, { target: 'material', material: 1, roughness: 0.25 });
     expect(edited.materials.map((m) => m.roughness)).toEqual([1, 0.25]);
     expect(scene.materials[1]?.roughness).toBe(1);
-    expect(withEdit(scene, { target: 'technique', parameters: { maxBounces: 3 } }).parameters).toEqual({ maxBounces: 3 });
+    expect(withEdit(scene, { target: 'technique', parameters: { maxBounces: 3 } }).parameters).toEqual({
+      maxBounces: 3,
+    });
     expect(withEdit(scene, { target: 'resolve', exposure: 2 }).resolve).toEqual({ exposure: 2, toneMap: 'aces' });
   });
 
@@ -35,9 +50,15 @@ describe('Model', () => {
   });
 });
 
-const picture = (presentedMs: number, steps: number, estimatedError: number, dropped = false) => ({
-  header: { steps, meanSamples: steps, estimatedError, errorLow: 0, errorHigh: 1, msSinceEdit: 50 } as FrameHeader, dropped, presentedMs, receivedMs: presentedMs, decodeMs: 1, bytes: 500,
-}) as FrameReport;
+const picture = (presentedMs: number, steps: number, estimatedError: number, dropped = false) =>
+  ({
+    header: { steps, meanSamples: steps, estimatedError, errorLow: 0, errorHigh: 1, msSinceEdit: 50 } as FrameHeader,
+    dropped,
+    presentedMs,
+    receivedMs: presentedMs,
+    decodeMs: 1,
+    bytes: 500,
+  }) as FrameReport;
 
 describe('Statistics', () => {
   it('begins the curve anew when the steps fall', () => {
@@ -74,7 +95,12 @@ describe('Statistics', () => {
 
 describe('Stage geometry', () => {
   it('fits and centres the picture', () => {
-    expect(fitPicture({ left: 10, top: 0, width: 200, height: 100 }, 50, 50)).toEqual({ left: 60, top: 0, width: 100, height: 100 });
+    expect(fitPicture({ left: 10, top: 0, width: 200, height: 100 }, 50, 50)).toEqual({
+      left: 60,
+      top: 0,
+      width: 100,
+      height: 100,
+    });
   });
   it('finds the pixel under the pointer, and none beside the picture', () => {
     const shown = { left: 100, top: 50, width: 200, height: 100 };
@@ -87,7 +113,9 @@ describe('Stage geometry', () => {
 
 describe('Inputs', () => {
   it.each([
-    { minimum: 0, maximum: 1 }, { minimum: 0, maximum: 1e9, softMaximum: 20, logarithmic: true }, { minimum: 1, maximum: 64, integer: true },
+    { minimum: 0, maximum: 1 },
+    { minimum: 0, maximum: 1e9, softMaximum: 20, logarithmic: true },
+    { minimum: 1, maximum: 64, integer: true },
     { softMinimum: -8, softMaximum: 8 },
   ])('a slider over %j gives its ends back and rises', (options) => {
     const scale = sliderScale(options);
@@ -98,10 +126,25 @@ describe('Inputs', () => {
     expect(scale.valueAt(600)).toBeGreaterThan(scale.valueAt(400));
   });
   it('writes numbers for people', () => {
-    expect([0, 0.25, 1234.5678, 1.5e-7, NaN].map((v) => formatNumber(v))).toEqual(['0', '0.25', '1235', '1.50e-7', '–']);
-    expect([formatSeconds(0.1834), formatSeconds(42.13), formatSeconds(75)]).toEqual(['0.18 s', '42.1 s', '1 min 15 s']);
+    expect([0, 0.25, 1234.5678, 1.5e-7, NaN].map((v) => formatNumber(v))).toEqual([
+      '0',
+      '0.25',
+      '1235',
+      '1.50e-7',
+      '–',
+    ]);
+    expect([formatSeconds(0.1834), formatSeconds(42.13), formatSeconds(75)]).toEqual([
+      '0.18 s',
+      '42.1 s',
+      '1 min 15 s',
+    ]);
     expect([formatBytes(999), formatBytes(82_000), formatBytes(2.5e6)]).toEqual(['999 B', '82.0 kB', '2.50 MB']);
-    expect(['baseColor', 'pbr-neutral', 'attenuationDistance', 'ior'].map(titleFromName)).toEqual(['Base color', 'PBR neutral', 'Attenuation distance', 'IOR']);
+    expect(['baseColor', 'pbr-neutral', 'attenuationDistance', 'ior'].map(titleFromName)).toEqual([
+      'Base color',
+      'PBR neutral',
+      'Attenuation distance',
+      'IOR',
+    ]);
   });
   it('takes whole decades for an axis', () => {
     expect(decades([0.02, 5])).toEqual({ low: -2, high: 1 });
@@ -114,7 +157,10 @@ describe('Announcer', () => {
   it('speaks at most every two seconds, the newest text', () => {
     vi.useFakeTimers();
     const said: string[] = [];
-    const announcer = new Announcer((text) => said.push(text), () => Date.now());
+    const announcer = new Announcer(
+      (text) => said.push(text),
+      () => Date.now(),
+    );
     ['a', 'b', 'c'].forEach((text) => announcer.say(text));
     expect(said).toEqual(['a']);
     vi.advanceTimersByTime(1999);

@@ -23,12 +23,16 @@ type Point = { x: number; y: number };
 /** Binds mouse, touch and keys of `element` to `target`. Keys act only while the element has the focus. */
 export function bindControls(element: HTMLElement, target: GestureTarget): void {
   bindPointers(element, target);
-  element.addEventListener('wheel', (event) => {
-    event.preventDefault();
-    const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1;
-    const delta = Math.max(-400, Math.min(400, event.deltaY * lines));
-    target.dolly(Math.exp(delta * kWheelRate * (event.ctrlKey ? 4 : 1)));
-  }, { passive: false });
+  element.addEventListener(
+    'wheel',
+    (event) => {
+      event.preventDefault();
+      const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1;
+      const delta = Math.max(-400, Math.min(400, event.deltaY * lines));
+      target.dolly(Math.exp(delta * kWheelRate * (event.ctrlKey ? 4 : 1)));
+    },
+    { passive: false },
+  );
   element.addEventListener('contextmenu', (event) => event.preventDefault());
   element.addEventListener('blur', () => element.classList.remove('by-pointer'));
   element.addEventListener('keydown', (event) => {
@@ -42,7 +46,10 @@ export function bindControls(element: HTMLElement, target: GestureTarget): void 
 /** Carries out one key; false when it means nothing to the camera. */
 export function handleKey(key: string, shift: boolean, target: GestureTarget): boolean {
   const arrows: Record<string, [number, number]> = {
-    ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1],
+    ArrowLeft: [-1, 0],
+    ArrowRight: [1, 0],
+    ArrowUp: [0, 1],
+    ArrowDown: [0, -1],
   };
   const arrow = arrows[key];
   if (arrow) {
@@ -52,12 +59,29 @@ export function handleKey(key: string, shift: boolean, target: GestureTarget): b
     return true;
   }
   switch (key) {
-    case '+': case '=': target.dolly(kKeyDolly); return true;
-    case '-': case '_': target.dolly(1 / kKeyDolly); return true;
-    case 'f': case 'F': target.frame(); return true;
-    case 'c': case 'C': target.centerPicked(); return true;
-    case 'r': case 'R': case 'Home': target.reset(); return true;
-    default: return false;
+    case '+':
+    case '=':
+      target.dolly(kKeyDolly);
+      return true;
+    case '-':
+    case '_':
+      target.dolly(1 / kKeyDolly);
+      return true;
+    case 'f':
+    case 'F':
+      target.frame();
+      return true;
+    case 'c':
+    case 'C':
+      target.centerPicked();
+      return true;
+    case 'r':
+    case 'R':
+    case 'Home':
+      target.reset();
+      return true;
+    default:
+      return false;
   }
 }
 

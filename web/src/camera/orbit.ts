@@ -1,4 +1,16 @@
-import { add, anyPerpendicular, cross, dot, length, lerp, normalize, rotateAbout, scale, sub, type Vec3 } from '../math/vec3';
+import {
+  add,
+  anyPerpendicular,
+  cross,
+  dot,
+  length,
+  lerp,
+  normalize,
+  rotateAbout,
+  scale,
+  sub,
+  type Vec3,
+} from '../math/vec3';
 
 /** Lens of the viewer; the fields of a glTF camera. */
 export interface Lens {
@@ -34,7 +46,7 @@ export function rightOf(pose: Pose): Vec3 {
   return length(right) > 0 ? right : anyPerpendicular(normalize(pose.up));
 }
 
-/** Turns eye and target about `pivot`: `yaw` about up, `pitch` about the picture's right axis, stopping at the poles [rad]. */
+/** Turns eye and target about `pivot`: `yaw` about up, `pitch` about the picture's right axis, up to the poles [rad]. */
 export function orbit(pose: Pose, pivot: Vec3, yaw: number, pitch: number): Pose {
   const up = normalize(pose.up);
   const polar = Math.acos(Math.min(1, Math.max(-1, dot(forwardOf(pose), up))));

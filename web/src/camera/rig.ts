@@ -13,8 +13,12 @@ export interface RigHooks {
 }
 
 export const samePose = (a: Pose, b: Pose): boolean =>
-  equal(a.eye, b.eye) && equal(a.target, b.target) && equal(a.up, b.up) &&
-  a.lens.perspective === b.lens.perspective && a.lens.yfov === b.lens.yfov && a.lens.ymag === b.lens.ymag &&
+  equal(a.eye, b.eye) &&
+  equal(a.target, b.target) &&
+  equal(a.up, b.up) &&
+  a.lens.perspective === b.lens.perspective &&
+  a.lens.yfov === b.lens.yfov &&
+  a.lens.ymag === b.lens.ymag &&
   a.lens.znear === b.lens.znear;
 
 /** The viewer's camera: gestures change it at any rate, the server hears of it once per animation frame. */

@@ -14,7 +14,10 @@ export function linearFromSrgb(encoded: number): number {
 
 /** "#rrggbb" of a linear Rec. 709 colour; components outside 0..1 are clipped. */
 export function hexFromLinear(color: Vec3): string {
-  const byte = (c: number) => Math.round(srgbFromLinear(c) * 255).toString(16).padStart(2, '0');
+  const byte = (c: number) =>
+    Math.round(srgbFromLinear(c) * 255)
+      .toString(16)
+      .padStart(2, '0');
   return '#' + color.map(byte).join('');
 }
 
@@ -24,7 +27,7 @@ export function linearFromHex(hex: string): Vec3 {
   return [component(1), component(3), component(5)];
 }
 
-/** Splits an unbounded colour (a radiance) into a colour whose largest component is 1 and a factor. Black: white times 0. */
+/** Splits a radiance into a colour whose largest component is 1 and a factor. Black: white times 0. */
 export function splitStrength(color: Vec3): { color: Vec3; strength: number } {
   const strength = Math.max(...color);
   if (!(strength > 0)) return { color: [1, 1, 1], strength: 0 };

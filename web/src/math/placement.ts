@@ -2,7 +2,12 @@ import type { SceneMessage, SceneNode } from '../protocol/messages.gen';
 import type { Vec3 } from './vec3';
 
 /** Affine map of a node, column-major 3x3 and the origin: world (or parent) from local. */
-export interface Placement { x: Vec3; y: Vec3; z: Vec3; origin: Vec3 }
+export interface Placement {
+  x: Vec3;
+  y: Vec3;
+  z: Vec3;
+  origin: Vec3;
+}
 
 const kIdentity: Placement = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1], origin: [0, 0, 0] };
 
@@ -15,7 +20,9 @@ export const applyLinear = (p: Placement, v: Vec3): Vec3 => [
 function compose(outer: Placement, inner: Placement): Placement {
   const o = applyLinear(outer, inner.origin);
   return {
-    x: applyLinear(outer, inner.x), y: applyLinear(outer, inner.y), z: applyLinear(outer, inner.z),
+    x: applyLinear(outer, inner.x),
+    y: applyLinear(outer, inner.y),
+    z: applyLinear(outer, inner.z),
     origin: [o[0] + outer.origin[0], o[1] + outer.origin[1], o[2] + outer.origin[2]],
   };
 }

@@ -26,7 +26,7 @@ export function eulerFromQuat(q: Quat): Vec3 {
   const sine = 2 * (w * y - z * x);
   if (Math.abs(sine) > kGimbalSine) {
     const half = 2 * Math.atan2(x, w);
-    return [half / kDegree, (Math.sign(sine) * 90), 0];
+    return [half / kDegree, Math.sign(sine) * 90, 0];
   }
   return [
     Math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)) / kDegree,

@@ -15,13 +15,24 @@ export type WireValue = number | string | readonly number[];
 /** The input for a field as the server announced it; null for kinds that a panel of their own shows. */
 export function announcedField(field: EditableField, onInput: (value: WireValue) => void): Field<WireValue> | null {
   switch (field.kind) {
-    case 'number': return announcedNumber(field, onInput) as Field<WireValue>;
-    case 'choice': return selectField(titleFromName(field.name), (field.choices ?? []).map((value) => ({ value, title: titleFromName(value) })), onInput) as Field<WireValue>;
-    case 'color': return announcedColor(field, onInput) as Field<WireValue>;
-    case 'color-alpha': return announcedColorAlpha(field, onInput);
-    case 'vector': return vectorField({ ...rangeOf(field), components: ['X', 'Y', 'Z'], onInput }) as Field<WireValue>;
-    case 'quaternion': return announcedRotation(field, onInput);
-    default: return null;
+    case 'number':
+      return announcedNumber(field, onInput) as Field<WireValue>;
+    case 'choice':
+      return selectField(
+        titleFromName(field.name),
+        (field.choices ?? []).map((value) => ({ value, title: titleFromName(value) })),
+        onInput,
+      ) as Field<WireValue>;
+    case 'color':
+      return announcedColor(field, onInput) as Field<WireValue>;
+    case 'color-alpha':
+      return announcedColorAlpha(field, onInput);
+    case 'vector':
+      return vectorField({ ...rangeOf(field), components: ['X', 'Y', 'Z'], onInput }) as Field<WireValue>;
+    case 'quaternion':
+      return announcedRotation(field, onInput);
+    default:
+      return null;
   }
 }
 
@@ -35,13 +46,27 @@ export function parameterField(parameter: TechniqueParameter, onInput: (value: n
   }
   const { minimum, maximum, unit } = parameter;
   const wide = minimum >= 0 && maximum / Math.max(minimum, 1) > 100;
-  return numberField({ label, unit, description, minimum, maximum, integer: parameter.type === 'integer', logarithmic: wide, onInput });
+  return numberField({
+    label,
+    unit,
+    description,
+    minimum,
+    maximum,
+    integer: parameter.type === 'integer',
+    logarithmic: wide,
+    onInput,
+  });
 }
 
 function rangeOf(field: EditableField) {
   return {
-    label: titleFromName(field.name), unit: field.unit, description: field.description,
-    minimum: field.minimum, maximum: field.maximum, softMinimum: field.softMinimum, softMaximum: field.softMaximum,
+    label: titleFromName(field.name),
+    unit: field.unit,
+    description: field.description,
+    minimum: field.minimum,
+    maximum: field.maximum,
+    softMinimum: field.softMinimum,
+    softMaximum: field.softMaximum,
   };
 }
 
@@ -54,9 +79,12 @@ function announcedNumber(field: EditableField, onInput: (value: number) => void)
   const low = range.softMinimum ?? range.minimum ?? -Infinity;
   const high = range.softMaximum ?? range.maximum ?? Infinity;
   const shown = numberField({
-    ...range, unit: inDegrees ? '°' : field.unit,
-    minimum: times(range.minimum), maximum: times(range.maximum),
-    softMinimum: times(range.softMinimum), softMaximum: times(range.softMaximum),
+    ...range,
+    unit: inDegrees ? '°' : field.unit,
+    minimum: times(range.minimum),
+    maximum: times(range.maximum),
+    softMinimum: times(range.softMinimum),
+    softMaximum: times(range.softMaximum),
     slider: Number.isFinite(low) && high < kUnbounded,
     logarithmic: low === 0 && high > kWideRange && !inDegrees,
     onInput: (value) => onInput(value / factor),
@@ -66,13 +94,25 @@ function announcedNumber(field: EditableField, onInput: (value: number) => void)
 
 function announcedColor(field: EditableField, onInput: (value: Vec3) => void): Field<Vec3> {
   const { label, unit, description } = rangeOf(field);
-  return colorField({ label, unit, description, maximum: field.maximum ?? kUnbounded, softMaximum: field.softMaximum, onInput });
+  return colorField({
+    label,
+    unit,
+    description,
+    maximum: field.maximum ?? kUnbounded,
+    softMaximum: field.softMaximum,
+    onInput,
+  });
 }
 
 function announcedColorAlpha(field: EditableField, onInput: (value: readonly number[]) => void): Field<WireValue> {
   let value: readonly number[] = [1, 1, 1, 1];
   const color = announcedColor(field, ([r, g, b]) => onInput((value = [r, g, b, value[3] ?? 1])));
-  const alpha = numberField({ label: 'Alpha', minimum: 0, maximum: 1, onInput: (a) => onInput((value = [...value.slice(0, 3), a])) });
+  const alpha = numberField({
+    label: 'Alpha',
+    minimum: 0,
+    maximum: 1,
+    onInput: (a) => onInput((value = [...value.slice(0, 3), a])),
+  });
   color.element.append(alpha.element);
   return {
     element: color.element,
@@ -86,8 +126,12 @@ function announcedColorAlpha(field: EditableField, onInput: (value: readonly num
 
 function announcedRotation(field: EditableField, onInput: (value: Quat) => void): Field<WireValue> {
   const angles = vectorField({
-    label: titleFromName(field.name), unit: '°', description: 'about x, then y, then z of the parent', components: ['X', 'Y', 'Z'],
-    softMinimum: -180, softMaximum: 180,
+    label: titleFromName(field.name),
+    unit: '°',
+    description: 'about x, then y, then z of the parent',
+    components: ['X', 'Y', 'Z'],
+    softMinimum: -180,
+    softMaximum: 180,
     onInput: ([x = 0, y = 0, z = 0]) => onInput(quatFromEuler([x, y, z])),
   });
   return {

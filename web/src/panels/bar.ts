@@ -4,14 +4,23 @@ import type { Model } from '../state/model';
 import { h, setText } from '../ui/dom';
 
 const kWords: Record<ConnectionState['kind'], string> = {
-  connecting: 'Connecting', connected: 'Connected', reconnecting: 'Reconnecting', refused: 'Refused', paused: 'Paused',
+  connecting: 'Connecting',
+  connected: 'Connected',
+  reconnecting: 'Reconnecting',
+  refused: 'Refused',
+  paused: 'Paused',
 };
 
 /** The badges of the bar: how the connection stands, and how far the picture is. */
 export class Bar {
   private readonly retry: HTMLButtonElement;
 
-  constructor(private readonly connection: HTMLElement, private readonly phase: HTMLElement, model: Model, retry: () => void) {
+  constructor(
+    private readonly connection: HTMLElement,
+    private readonly phase: HTMLElement,
+    model: Model,
+    retry: () => void,
+  ) {
     this.retry = h('button', { class: 'retry', onClick: retry, hidden: true }, 'Retry now');
     connection.after(this.retry);
     model.on('connection', (state) => this.showConnection(state));

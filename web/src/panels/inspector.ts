@@ -16,17 +16,24 @@ interface Sheet {
   facts: string[];
 }
 
-interface Shown { sheet: Sheet; fields: Map<string, Field<WireValue>> }
+interface Shown {
+  sheet: Sheet;
+  fields: Map<string, Field<WireValue>>;
+}
 
 // So many fields of a thing are always open; the rest wait behind "more".
 const kOpenFields = 4;
 
-/** The panel of what is selected: one sheet each for node, its light and its material, built from the announced fields. */
+/** The panel of what is selected: a sheet each for node, its light and its material, built from the announced fields. */
 export class Inspector {
   private shown: Shown[] = [];
   private moreOpen = false;
 
-  constructor(private readonly root: HTMLElement, private readonly model: Model, private readonly edit: (label: string, edit: Edit) => void) {
+  constructor(
+    private readonly root: HTMLElement,
+    private readonly model: Model,
+    private readonly edit: (label: string, edit: Edit) => void,
+  ) {
     model.on('selection', () => this.rebuild());
     model.on('hello', () => this.rebuild());
     model.on('scene', () => this.rebuildOrRefresh());
@@ -44,7 +51,13 @@ export class Inspector {
     this.shown = [];
     this.root.replaceChildren();
     if (sheets.length === 0) {
-      this.root.append(h('p', { class: 'hint' }, 'Click something in the picture, or choose it in the list, to see what it is made of.'));
+      this.root.append(
+        h(
+          'p',
+          { class: 'hint' },
+          'Click something in the picture, or choose it in the list, to see what it is made of.',
+        ),
+      );
       return;
     }
     for (const sheet of sheets) this.root.append(this.buildSheet(sheet));
@@ -65,10 +78,21 @@ export class Inspector {
     }
     this.shown.push({ sheet, fields });
     const rest = rows.splice(kOpenFields);
-    const more = rest.length === 0 ? null : h('details', {
-      class: 'more', open: this.moreOpen,
-      onToggle: (event: Event) => { this.moreOpen = (event.target as HTMLDetailsElement).open; },
-    }, h('summary', {}, `More (${rest.length})`), ...rest);
+    const more =
+      rest.length === 0
+        ? null
+        : h(
+            'details',
+            {
+              class: 'more',
+              open: this.moreOpen,
+              onToggle: (event: Event) => {
+                this.moreOpen = (event.target as HTMLDetailsElement).open;
+              },
+            },
+            h('summary', {}, `More (${rest.length})`),
+            ...rest,
+          );
     const facts = sheet.facts.length > 0 ? h('p', { class: 'facts' }, sheet.facts.join(' · ')) : null;
     return h('section', { class: 'sheet', 'aria-label': sheet.title }, h('h3', {}, sheet.title), facts, ...rows, more);
   }
@@ -79,7 +103,9 @@ export class Inspector {
   }
 
   private rebuildOrRefresh(): void {
-    const now = this.sheets().map((s) => s.title + JSON.stringify(s.index)).join();
+    const now = this.sheets()
+      .map((s) => s.title + JSON.stringify(s.index))
+      .join();
     const before = this.shown.map((s) => s.sheet.title + JSON.stringify(s.sheet.index)).join();
     if (now === before) this.refresh();
     else this.rebuild();
@@ -100,10 +126,14 @@ export class Inspector {
 
 function sheetsOf(scene: SceneMessage, selection: Selection): Sheet[] {
   switch (selection.kind) {
-    case 'nothing': return [];
-    case 'environment': return [environmentSheet(scene)];
-    case 'material': return [materialSheet(scene, selection.material)];
-    case 'light': return [lightSheet(scene, selection.light), ...carriersOf(scene, selection.light)];
+    case 'nothing':
+      return [];
+    case 'environment':
+      return [environmentSheet(scene)];
+    case 'material':
+      return [materialSheet(scene, selection.material)];
+    case 'light':
+      return [lightSheet(scene, selection.light), ...carriersOf(scene, selection.light)];
     case 'node': {
       const light = scene.nodes[selection.node]?.light;
       return [
@@ -122,7 +152,10 @@ function materialSheet(scene: SceneMessage, material: number): Sheet {
   if (item?.doubleSided) facts.push('double-sided');
   if (item?.unlit) facts.push('unlit');
   return {
-    title: nameOf(item?.name, 'Material', material), target: 'material', index: { material }, facts,
+    title: nameOf(item?.name, 'Material', material),
+    target: 'material',
+    index: { material },
+    facts,
     read: (s) => s.materials[material] as Item | undefined,
   };
 }
@@ -130,7 +163,10 @@ function materialSheet(scene: SceneMessage, material: number): Sheet {
 function lightSheet(scene: SceneMessage, light: number): Sheet {
   const item = scene.lights[light];
   return {
-    title: nameOf(item?.name, 'Light', light), target: 'light', index: { light }, facts: item ? [`${item.type} light`] : [],
+    title: nameOf(item?.name, 'Light', light),
+    target: 'light',
+    index: { light },
+    facts: item ? [`${item.type} light`] : [],
     read: (s) => s.lights[light] as Item | undefined,
   };
 }
@@ -148,20 +184,25 @@ function nodeSheet(scene: SceneMessage, node: number): Sheet {
   if (item?.parent !== undefined) facts.push(`in ${nameOf(scene.nodes[item.parent]?.name, 'Node', item.parent)}`);
   if (item?.matrix) facts.push('placed by a matrix, which an edit here replaces');
   return {
-    title: nameOf(item?.name, 'Node', node), target: 'node', index: { node }, facts,
+    title: nameOf(item?.name, 'Node', node),
+    target: 'node',
+    index: { node },
+    facts,
     read: (s) => s.nodes[node] as Item | undefined,
   };
 }
 
 function environmentSheet(scene: SceneMessage): Sheet {
   return {
-    title: 'Environment', target: 'environment', index: {},
+    title: 'Environment',
+    target: 'environment',
+    index: {},
     facts: [scene.environment.hasImage ? 'an image, multiplied by the radiance' : 'constant radiance'],
     read: (s) => s.environment as unknown as Item,
   };
 }
 
-/** Leaves out fields that the thing at hand has no use for: it does not hold them, or they shape the cone of a light without one. */
+/** Leaves out fields that the thing does not hold, and those that shape the cone of a light without one. */
 function isOfUse(field: EditableField, sheet: Sheet, item: Item | undefined): boolean {
   if (!item || item[field.name] === undefined) return false;
   if (sheet.target !== 'light') return true;

@@ -27,9 +27,18 @@ export class RenderPanel {
   private readonly knobs = h('div', { class: 'knobs' });
   private knobsOf = '';
 
-  constructor(private readonly root: HTMLElement, private readonly model: Model, private readonly actions: RenderActions) {
+  constructor(
+    private readonly root: HTMLElement,
+    private readonly model: Model,
+    private readonly actions: RenderActions,
+  ) {
     this.fieldOfView = numberField({
-      label: 'Field of view', unit: '°', minimum: 1, maximum: 170, softMinimum: 10, softMaximum: 100,
+      label: 'Field of view',
+      unit: '°',
+      minimum: 1,
+      maximum: 170,
+      softMinimum: 10,
+      softMaximum: 100,
       onInput: (degrees) => actions.setFieldOfView(degrees / kDegrees),
     });
     model.on('hello', (hello) => this.build(hello));
@@ -41,21 +50,40 @@ export class RenderPanel {
     const resolveFields = hello.editable.find((e) => e.target === 'resolve')?.fields ?? [];
     this.resolve.clear();
     const shown = resolveFields.map((field) => this.resolveField(field, hello));
-    this.technique = selectField('Technique', hello.techniques.map((t) => ({ value: t.name, title: t.title, description: t.description })),
-      (name) => this.actions.edit('Technique', { target: 'technique', technique: name }));
+    this.technique = selectField(
+      'Technique',
+      hello.techniques.map((t) => ({ value: t.name, title: t.title, description: t.description })),
+      (name) => this.actions.edit('Technique', { target: 'technique', technique: name }),
+    );
     this.size = selectField('Picture size', [], (value) => this.setSize(value));
     this.knobsOf = '';
     this.root.replaceChildren(
-      h('section', { class: 'sheet', 'aria-label': 'Display settings' }, h('h3', {}, 'Display'), ...shown, this.fieldOfView.element, this.size.element),
-      h('section', { class: 'sheet', 'aria-label': 'Technique and its parameters' }, h('h3', {}, 'Technique'), this.technique.element, this.about, this.knobs),
-      h('div', { class: 'buttons' }, h('button', { onClick: () => this.actions.saveExr() }, 'Save EXR')));
+      h(
+        'section',
+        { class: 'sheet', 'aria-label': 'Display settings' },
+        h('h3', {}, 'Display'),
+        ...shown,
+        this.fieldOfView.element,
+        this.size.element,
+      ),
+      h(
+        'section',
+        { class: 'sheet', 'aria-label': 'Technique and its parameters' },
+        h('h3', {}, 'Technique'),
+        this.technique.element,
+        this.about,
+        this.knobs,
+      ),
+      h('div', { class: 'buttons' }, h('button', { onClick: () => this.actions.saveExr() }, 'Save EXR')),
+    );
     if (this.model.scene) this.refresh(this.model.scene);
   }
 
   private resolveField(field: EditableField, hello: ServerHello): HTMLElement | null {
     const choices = field.name === 'toneMap' ? { choices: [...hello.toneMaps] } : {};
     const input = announcedField({ ...field, ...choices }, (value) =>
-      this.actions.edit(titleFromName(field.name), { target: 'resolve', [field.name]: value } as Edit));
+      this.actions.edit(titleFromName(field.name), { target: 'resolve', [field.name]: value } as Edit),
+    );
     if (!input) return null;
     this.resolve.set(field.name, input);
     return input.element;
@@ -75,17 +103,26 @@ export class RenderPanel {
   private showTechnique(scene: SceneMessage): void {
     this.technique?.set(scene.technique);
     const info = this.model.hello?.techniques.find((t) => t.name === scene.technique);
-    setText(this.about, info ? info.description + (info.biased ? ' Biased: it converges to something near the truth.' : '') : '');
+    setText(
+      this.about,
+      info ? info.description + (info.biased ? ' Biased: it converges to something near the truth.' : '') : '',
+    );
     if (info && this.knobsOf !== info.name) {
       this.knobsOf = info.name;
       this.parameters.clear();
-      this.knobs.replaceChildren(...info.parameters.map((parameter) => {
-        const field = parameterField(parameter, (value) =>
-          this.actions.edit(titleFromName(parameter.name), { target: 'technique', parameters: { [parameter.name]: value } }));
-        field.set(parameter.default);
-        this.parameters.set(parameter.name, field);
-        return field.element;
-      }));
+      this.knobs.replaceChildren(
+        ...info.parameters.map((parameter) => {
+          const field = parameterField(parameter, (value) =>
+            this.actions.edit(titleFromName(parameter.name), {
+              target: 'technique',
+              parameters: { [parameter.name]: value },
+            }),
+          );
+          field.set(parameter.default);
+          this.parameters.set(parameter.name, field);
+          return field.element;
+        }),
+      );
     }
     for (const [name, field] of this.parameters) {
       const value = scene.parameters[name];
@@ -104,7 +141,9 @@ export class RenderPanel {
     const pixels = (value: string) => value.replace('x', ' × ');
     select.replaceChildren(
       ...[...new Set([now, ...sizes])].map((value) => option(value, pixels(value))),
-      option('half', 'Half the window'), option('window', 'The whole window'));
+      option('half', 'Half the window'),
+      option('window', 'The whole window'),
+    );
     select.value = now;
   }
 
@@ -112,7 +151,9 @@ export class RenderPanel {
     const most = this.model.hello?.limits.maxImageSide ?? 1024;
     const stage = this.actions.stageSize();
     const share = value === 'half' ? 0.5 : 1;
-    const [width = 512, height = 512] = /^\d/.test(value) ? value.split('x').map(Number) : [stage.width * share, stage.height * share];
+    const [width = 512, height = 512] = /^\d/.test(value)
+      ? value.split('x').map(Number)
+      : [stage.width * share, stage.height * share];
     const side = (pixels: number) => Math.min(most, Math.max(16, Math.round(pixels)));
     this.actions.edit('Picture size', { target: 'image', width: side(width), height: side(height) });
   }

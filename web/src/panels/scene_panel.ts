@@ -8,22 +8,40 @@ import { nameOf } from './names';
 // Groups longer than this begin folded, so that the others are seen.
 const kLongGroup = 12;
 
-/** The scene as a list: the keyboard's equal of picking. Also what loading left out, and a field to load another file. */
+/** The scene as a list, the keyboard's equal of picking; what loading left out; a field to load another file. */
 export class ScenePanel {
   private readonly tree: Tree;
   private readonly report = h('div', { class: 'report' });
-  private readonly uri = h('input', { type: 'text', 'aria-label': 'Scene file under the asset root', placeholder: 'scene.glb', spellcheck: false });
+  private readonly uri = h('input', {
+    type: 'text',
+    'aria-label': 'Scene file under the asset root',
+    placeholder: 'scene.glb',
+    spellcheck: false,
+  });
 
-  constructor(root: HTMLElement, private readonly model: Model, load: (uri: string) => void, useCamera: (index: number) => void) {
+  constructor(
+    root: HTMLElement,
+    private readonly model: Model,
+    load: (uri: string) => void,
+    useCamera: (index: number) => void,
+  ) {
     this.tree = new Tree('Scene', (key) => {
       const [kind, index] = splitKey(key);
       if (kind === 'camera') useCamera(index);
       else model.select(selectionOf(key));
     });
-    const form = h('form', { class: 'load', onSubmit: (event: Event) => {
-      event.preventDefault();
-      if (this.uri.value.trim()) load(this.uri.value.trim());
-    } }, this.uri, h('button', { type: 'submit' }, 'Load'));
+    const form = h(
+      'form',
+      {
+        class: 'load',
+        onSubmit: (event: Event) => {
+          event.preventDefault();
+          if (this.uri.value.trim()) load(this.uri.value.trim());
+        },
+      },
+      this.uri,
+      h('button', { type: 'submit' }, 'Load'),
+    );
     root.append(this.tree.element, this.report, form);
     model.on('scene', (scene) => this.show(scene));
     model.on('selection', (selection) => this.tree.select(keyOf(selection)));
@@ -33,10 +51,22 @@ export class ScenePanel {
     this.tree.show(treeOf(scene));
     this.tree.select(keyOf(this.model.selection));
     const { triangles, unsupported, notes } = scene.report;
-    this.report.replaceChildren(h('p', { class: 'quiet' }, `${formatCount(triangles)} triangles, ${scene.materials.length} materials`));
+    this.report.replaceChildren(
+      h('p', { class: 'quiet' }, `${formatCount(triangles)} triangles, ${scene.materials.length} materials`),
+    );
     if (unsupported.length + notes.length === 0) return;
-    const lines = [...unsupported.map((u) => `${u.feature}: ${u.note}${u.materials.length ? ` (${u.materials.join(', ')})` : ''}`), ...notes];
-    this.report.append(h('details', {}, h('summary', {}, `Load report (${lines.length})`), h('ul', {}, ...lines.map((line) => h('li', {}, line)))));
+    const lines = [
+      ...unsupported.map((u) => `${u.feature}: ${u.note}${u.materials.length ? ` (${u.materials.join(', ')})` : ''}`),
+      ...notes,
+    ];
+    this.report.append(
+      h(
+        'details',
+        {},
+        h('summary', {}, `Load report (${lines.length})`),
+        h('ul', {}, ...lines.map((line) => h('li', {}, line))),
+      ),
+    );
   }
 }
 
@@ -53,21 +83,32 @@ function splitKey(key: string): [string, number] {
 function selectionOf(key: string): Selection {
   const [kind, index] = splitKey(key);
   switch (kind) {
-    case 'node': return { kind: 'node', node: index };
-    case 'glow': case 'material': return { kind: 'material', material: index };
-    case 'light': return { kind: 'light', light: index };
-    case 'environment': return { kind: 'environment' };
-    default: return { kind: 'nothing' };
+    case 'node':
+      return { kind: 'node', node: index };
+    case 'glow':
+    case 'material':
+      return { kind: 'material', material: index };
+    case 'light':
+      return { kind: 'light', light: index };
+    case 'environment':
+      return { kind: 'environment' };
+    default:
+      return { kind: 'nothing' };
   }
 }
 
 function keyOf(selection: Selection): string | null {
   switch (selection.kind) {
-    case 'node': return `node:${selection.node}`;
-    case 'material': return `material:${selection.material}`;
-    case 'light': return `light:${selection.light}`;
-    case 'environment': return 'environment:0';
-    case 'nothing': return null;
+    case 'node':
+      return `node:${selection.node}`;
+    case 'material':
+      return `material:${selection.material}`;
+    case 'light':
+      return `light:${selection.light}`;
+    case 'environment':
+      return 'environment:0';
+    case 'nothing':
+      return null;
   }
 }
 
@@ -76,21 +117,45 @@ function treeOf(scene: SceneMessage): TreeItem[] {
   scene.nodes.forEach((node, i) => children.set(node.parent, [...(children.get(node.parent) ?? []), i]));
   const nodeItem = (i: number): TreeItem => {
     const node = scene.nodes[i];
-    const note = node?.mesh !== undefined ? 'mesh' : node?.light !== undefined ? 'light' : node?.camera !== undefined ? 'camera' : undefined;
-    return { key: `node:${i}`, label: nameOf(node?.name, 'Node', i), note, children: (children.get(i) ?? []).map(nodeItem) };
+    const note =
+      node?.mesh !== undefined
+        ? 'mesh'
+        : node?.light !== undefined
+          ? 'light'
+          : node?.camera !== undefined
+            ? 'camera'
+            : undefined;
+    return {
+      key: `node:${i}`,
+      label: nameOf(node?.name, 'Node', i),
+      note,
+      children: (children.get(i) ?? []).map(nodeItem),
+    };
   };
   const leaf = (key: string, label: string, note?: string): TreeItem => ({ key, label, note, children: [] });
   const group = (key: string, label: string, items: TreeItem[]): TreeItem[] =>
-    (items.length > 0 ? [{ key, label, children: items, foldedAtFirst: items.length > kLongGroup }] : []);
+    items.length > 0 ? [{ key, label, children: items, foldedAtFirst: items.length > kLongGroup }] : [];
   const glows = (emission: readonly number[]) => emission.some((c) => c > 0);
   return [
     ...group('group:lights', 'Lights', [
       ...scene.lights.map((light, i) => leaf(`light:${i}`, nameOf(light.name, 'Light', i), light.type)),
-      ...scene.materials.flatMap((m, i) => (glows(m.emission) ? [leaf(`glow:${i}`, nameOf(m.name, 'Material', i), 'surface')] : [])),
+      ...scene.materials.flatMap((m, i) =>
+        glows(m.emission) ? [leaf(`glow:${i}`, nameOf(m.name, 'Material', i), 'surface')] : [],
+      ),
       leaf('environment:0', 'Environment', scene.environment.hasImage ? 'image' : 'constant'),
     ]),
-    ...group('group:cameras', 'Cameras', scene.cameras.map((c, i) => leaf(`camera:${i}`, nameOf(c.name, 'Camera', i)))),
+    ...group(
+      'group:cameras',
+      'Cameras',
+      scene.cameras.map((c, i) => leaf(`camera:${i}`, nameOf(c.name, 'Camera', i))),
+    ),
     ...group('group:nodes', 'Objects', (children.get(undefined) ?? []).map(nodeItem)),
-    ...group('group:materials', 'Materials', scene.materials.map((m, i) => leaf(`material:${i}`, nameOf(m.name, 'Material', i), glows(m.emission) ? 'glows' : undefined))),
+    ...group(
+      'group:materials',
+      'Materials',
+      scene.materials.map((m, i) =>
+        leaf(`material:${i}`, nameOf(m.name, 'Material', i), glows(m.emission) ? 'glows' : undefined),
+      ),
+    ),
   ];
 }

@@ -3,7 +3,12 @@ import type { ConnectionState } from '../channel';
 import { setText } from '../ui/dom';
 import { nowMs } from '../clock';
 
-export interface Rectangle { left: number; top: number; width: number; height: number }
+export interface Rectangle {
+  left: number;
+  top: number;
+  width: number;
+  height: number;
+}
 
 /** The largest rectangle of the picture's shape inside a box, centred. */
 export function fitPicture(box: Rectangle, pictureWidth: number, pictureHeight: number): Rectangle {
@@ -14,7 +19,13 @@ export function fitPicture(box: Rectangle, pictureWidth: number, pictureHeight: 
 }
 
 /** The picture's pixel under a point of the window; null beside the picture. */
-export function pixelAt(shown: Rectangle, pictureWidth: number, pictureHeight: number, clientX: number, clientY: number): { x: number; y: number } | null {
+export function pixelAt(
+  shown: Rectangle,
+  pictureWidth: number,
+  pictureHeight: number,
+  clientX: number,
+  clientY: number,
+): { x: number; y: number } | null {
   const x = Math.floor(((clientX - shown.left) / shown.width) * pictureWidth);
   const y = Math.floor(((clientY - shown.top) / shown.height) * pictureHeight);
   return x >= 0 && y >= 0 && x < pictureWidth && y < pictureHeight ? { x, y } : null;
@@ -26,7 +37,12 @@ export class Stage {
   private hasPicture = false;
   private retryTimer: ReturnType<typeof setInterval> | undefined;
 
-  constructor(readonly element: HTMLElement, private readonly stale: HTMLElement, private readonly marker: HTMLElement, model: Model) {
+  constructor(
+    readonly element: HTMLElement,
+    private readonly stale: HTMLElement,
+    private readonly marker: HTMLElement,
+    model: Model,
+  ) {
     model.on('connection', (state) => this.showConnection(state));
   }
 
@@ -57,9 +73,10 @@ export class Stage {
     this.marker.style.top = `${shown.top - box.top + ((pixel.y + 0.5) / this.size.height) * shown.height}px`;
     this.marker.hidden = false;
     this.marker.getAnimations().forEach((animation) => animation.cancel());
-    this.marker.animate([{ opacity: 1 }, { opacity: 1, offset: 0.6 }, { opacity: 0 }], { duration: 1600 }).onfinish = () => {
-      this.marker.hidden = true;
-    };
+    this.marker.animate([{ opacity: 1 }, { opacity: 1, offset: 0.6 }, { opacity: 0 }], { duration: 1600 }).onfinish =
+      () => {
+        this.marker.hidden = true;
+      };
   }
 
   private showConnection(state: ConnectionState): void {
@@ -76,13 +93,19 @@ export class Stage {
 
 function staleText(state: ConnectionState, hasPicture: boolean): string {
   const what = hasPicture ? 'Stale picture — ' : '';
-  const wait = 'retryAtMs' in state && state.retryAtMs !== undefined ? Math.max(0, state.retryAtMs - nowMs()) / 1000 : null;
+  const wait =
+    'retryAtMs' in state && state.retryAtMs !== undefined ? Math.max(0, state.retryAtMs - nowMs()) / 1000 : null;
   const again = wait === null ? '' : `; trying again in ${wait.toFixed(1)} s`;
   switch (state.kind) {
-    case 'connecting': return `${what}connecting…`;
-    case 'reconnecting': return `${what}${state.reason}${again}`;
-    case 'refused': return `${what}refused: ${state.reason}${again}`;
-    case 'paused': return `${what}paused while the page was hidden`;
-    case 'connected': return '';
+    case 'connecting':
+      return `${what}connecting…`;
+    case 'reconnecting':
+      return `${what}${state.reason}${again}`;
+    case 'refused':
+      return `${what}refused: ${state.reason}${again}`;
+    case 'paused':
+      return `${what}paused while the page was hidden`;
+    case 'connected':
+      return '';
   }
 }

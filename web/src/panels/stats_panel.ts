@@ -7,8 +7,17 @@ import { formatBytes, formatCount, formatError, formatMilliseconds, formatNumber
 import { ErrorPlot } from '../ui/plot';
 
 const kRows = [
-  'Samples per pixel', 'Steps', 'Pixels gathered', 'Estimated error', 'Edit to pixels', 'Frames', 'Received', 'Dropped',
-  'Frame', 'Rays', 'Discarded samples',
+  'Samples per pixel',
+  'Steps',
+  'Pixels gathered',
+  'Estimated error',
+  'Edit to pixels',
+  'Frames',
+  'Received',
+  'Dropped',
+  'Frame',
+  'Rays',
+  'Discarded samples',
 ] as const;
 type Row = (typeof kRows)[number];
 
@@ -22,7 +31,11 @@ export class StatsPanel {
   private readonly device = h('p', { class: 'facts' });
   private readonly memory = h('p', { class: 'facts' });
 
-  constructor(root: HTMLElement, private readonly model: Model, private readonly statistics: Statistics) {
+  constructor(
+    root: HTMLElement,
+    private readonly model: Model,
+    private readonly statistics: Statistics,
+  ) {
     const list = h('dl', { class: 'figures' });
     for (const name of kRows) {
       const value = h('dd', {}, '–');
@@ -30,8 +43,20 @@ export class StatsPanel {
       list.append(h('div', {}, h('dt', {}, name), value));
     }
     root.append(
-      h('h3', {}, 'Error over time'), this.plot.element, list, this.device,
-      h('details', { class: 'more', open: true }, h('summary', {}, 'Where the time went'), this.stages, this.ran, this.leftOut, this.memory));
+      h('h3', {}, 'Error over time'),
+      this.plot.element,
+      list,
+      this.device,
+      h(
+        'details',
+        { class: 'more', open: true },
+        h('summary', {}, 'Where the time went'),
+        this.stages,
+        this.ran,
+        this.leftOut,
+        this.memory,
+      ),
+    );
     setInterval(() => this.refresh(), 250);
   }
 
@@ -55,16 +80,23 @@ export class StatsPanel {
     this.set('Samples per pixel', formatNumber(header.meanSamples, 4));
     this.set('Steps', formatCount(header.steps));
     this.set('Pixels gathered', `${formatNumber(header.gatheredShare * 100, 3)} %`);
-    const interval = Number.isFinite(header.errorHigh) ? ` (${formatError(header.errorLow)}–${formatError(header.errorHigh)})` : '';
-    this.set('Estimated error', Number.isFinite(header.estimatedError) ? formatError(header.estimatedError) + interval : 'not known yet');
+    const interval = Number.isFinite(header.errorHigh)
+      ? ` (${formatError(header.errorLow)}–${formatError(header.errorHigh)})`
+      : '';
+    this.set(
+      'Estimated error',
+      Number.isFinite(header.estimatedError) ? formatError(header.estimatedError) + interval : 'not known yet',
+    );
   }
 
   private showTransport(header: FrameHeader | undefined): void {
     const s = this.statistics;
     const at = nowMs();
     const p95 = s.latencyQuantile(0.95);
-    this.set('Edit to pixels', Number.isFinite(p95)
-      ? `${formatMilliseconds(s.lastLatency())} (p95 ${formatMilliseconds(p95)})` : '–');
+    this.set(
+      'Edit to pixels',
+      Number.isFinite(p95) ? `${formatMilliseconds(s.lastLatency())} (p95 ${formatMilliseconds(p95)})` : '–',
+    );
     this.set('Frames', `${formatNumber(s.framesPerSecond(at), 3)} /s, ${formatCount(s.presented)} shown`);
     this.set('Received', `${formatBytes(s.bytesPerSecond(at))}/s of ${formatBytes(s.bytes)}`);
     this.set('Dropped', `${formatCount(header?.replaced ?? 0)} at the server, ${formatCount(s.dropped)} here`);
@@ -84,13 +116,23 @@ export class StatsPanel {
   }
 
   private showStages(header: FrameHeader, hello: ServerHello): void {
-    const times: [string, number][] = hello.stages.slice(0, header.stageCount).map((name, i) => [name, header.stageMs[i] ?? 0]);
+    const times: [string, number][] = hello.stages
+      .slice(0, header.stageCount)
+      .map((name, i) => [name, header.stageMs[i] ?? 0]);
     times.push(['encode', header.encodeMs], ['decode', this.statistics.last?.decodeMs ?? 0]);
     const longest = Math.max(...times.map(([, ms]) => ms), 1e-6);
-    this.stages.replaceChildren(...times.map(([name, ms]) => {
-      const bar = h('span', { class: 'bar' });
-      bar.style.width = `${(100 * ms) / longest}%`;
-      return h('div', { class: 'stage-row' }, h('span', { class: 'name' }, name), h('span', { class: 'track' }, bar), h('span', { class: 'ms' }, formatMilliseconds(ms)));
-    }));
+    this.stages.replaceChildren(
+      ...times.map(([name, ms]) => {
+        const bar = h('span', { class: 'bar' });
+        bar.style.width = `${(100 * ms) / longest}%`;
+        return h(
+          'div',
+          { class: 'stage-row' },
+          h('span', { class: 'name' }, name),
+          h('span', { class: 'track' }, bar),
+          h('span', { class: 'ms' }, formatMilliseconds(ms)),
+        );
+      }),
+    );
   }
 }

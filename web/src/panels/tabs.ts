@@ -1,6 +1,11 @@
 import { h } from '../ui/dom';
 
-const kTabs = [['inspector', 'Selection'], ['scene', 'Scene'], ['render', 'Rendering'], ['stats', 'Statistics']] as const;
+const kTabs = [
+  ['inspector', 'Selection'],
+  ['scene', 'Scene'],
+  ['render', 'Rendering'],
+  ['stats', 'Statistics'],
+] as const;
 
 /** On narrow windows one panel is shown at a time; wide ones show all, and the style sheet hides these buttons. */
 export function bindTabs(nav: HTMLElement, body: HTMLElement): void {

@@ -7,7 +7,7 @@ export interface Outcome {
   kind: 'applied' | 'failed' | 'unsent';
   camera: boolean;
   cost?: CostClass;
-  /** From the input to the first presented frame that shows it; absent until then, and for edits that change nothing. */
+  /** From the input to the first presented frame that shows it; absent until then, and where nothing changed. */
   latencyMs?: number;
   message?: string;
 }
@@ -20,8 +20,17 @@ export interface DeskHooks {
   onOutcome(outcome: Outcome): void;
 }
 
-interface Draft { label: string; message: Outgoing; inputMs: number; camera: boolean }
-interface Pending { draft: Draft; seq: number | null; cost: CostClass | null }
+interface Draft {
+  label: string;
+  message: Outgoing;
+  inputMs: number;
+  camera: boolean;
+}
+interface Pending {
+  draft: Draft;
+  seq: number | null;
+  cost: CostClass | null;
+}
 
 const kMinFlushMs = 1000 / 60 - 1;
 
@@ -46,7 +55,12 @@ export class EditDesk {
 
   /** The view; callers pace it themselves. */
   camera(view: View): void {
-    this.send({ label: 'Camera', message: { op: 'camera', ...view } as Outgoing, inputMs: this.hooks.now(), camera: true });
+    this.send({
+      label: 'Camera',
+      message: { op: 'camera', ...view } as Outgoing,
+      inputMs: this.hooks.now(),
+      camera: true,
+    });
   }
 
   /** True while camera edits are on their way: the server's view is then older than ours. */
@@ -67,7 +81,8 @@ export class EditDesk {
     const [ticket, entry] = found;
     entry.cost = ack.cost;
     if (ack.cost === 'none' || ack.superseded) this.finish(ticket, { kind: 'applied', cost: ack.cost });
-    else this.hooks.onOutcome({ label: entry.draft.label, camera: entry.draft.camera, kind: 'applied', cost: ack.cost });
+    else
+      this.hooks.onOutcome({ label: entry.draft.label, camera: entry.draft.camera, kind: 'applied', cost: ack.cost });
   }
 
   /** True when the error was about an edit of ours. */

@@ -91,10 +91,14 @@ export class Model {
 
 function selectionExists(scene: SceneMessage, selection: Selection): boolean {
   switch (selection.kind) {
-    case 'node': return selection.node < scene.nodes.length && (selection.material ?? 0) < Math.max(1, scene.materials.length);
-    case 'material': return selection.material < scene.materials.length;
-    case 'light': return selection.light < scene.lights.length;
-    default: return true;
+    case 'node':
+      return selection.node < scene.nodes.length && (selection.material ?? 0) < Math.max(1, scene.materials.length);
+    case 'material':
+      return selection.material < scene.materials.length;
+    case 'light':
+      return selection.light < scene.lights.length;
+    default:
+      return true;
   }
 }
 
@@ -120,16 +124,19 @@ export function withEdit(scene: SceneMessage, edit: Edit): SceneMessage {
       const { target: _, ...fields } = edit;
       return { ...scene, environment: { ...scene.environment, ...fields } };
     }
-    case 'camera': return { ...scene, view: { ...scene.view, ...edit.view } };
+    case 'camera':
+      return { ...scene, view: { ...scene.view, ...edit.view } };
     case 'resolve': {
       const { target: _, ...fields } = edit;
       return { ...scene, resolve: { ...scene.resolve, ...fields } };
     }
-    case 'technique': return {
-      ...scene,
-      technique: edit.technique ?? scene.technique,
-      parameters: { ...scene.parameters, ...edit.parameters },
-    };
-    case 'image': return { ...scene, width: edit.width, height: edit.height };
+    case 'technique':
+      return {
+        ...scene,
+        technique: edit.technique ?? scene.technique,
+        parameters: { ...scene.parameters, ...edit.parameters },
+      };
+    case 'image':
+      return { ...scene, width: edit.width, height: edit.height };
   }
 }

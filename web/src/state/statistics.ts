@@ -6,9 +6,13 @@ const kWindowMs = 2000;
 const kMaxPoints = 600;
 const kMaxLatencies = 120;
 
-interface Sample { atMs: number; bytes: number; shown: boolean }
+interface Sample {
+  atMs: number;
+  bytes: number;
+  shown: boolean;
+}
 
-/** Figures gathered from presented frames: rates over the last two seconds, latencies, and the error since the restart. */
+/** Figures gathered from presented frames: rates over two seconds, latencies, and the error since the restart. */
 export class Statistics {
   last: FrameReport | null = null;
   presented = 0;

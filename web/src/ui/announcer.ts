@@ -6,7 +6,10 @@ export class Announcer {
   private lastMs = -Infinity;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(private readonly speak: (text: string) => void, private readonly now: () => number = () => performance.now()) {}
+  constructor(
+    private readonly speak: (text: string) => void,
+    private readonly now: () => number = () => performance.now(),
+  ) {}
 
   say(text: string): void {
     this.waiting = text;

@@ -1,8 +1,12 @@
 type Child = Node | string | null | undefined;
 type Props = Record<string, string | number | boolean | null | undefined | ((event: never) => void)>;
 
-/** Makes an element: "on…" props are listeners, `class` and everything else are attributes; null and false are left out. */
-export function h<K extends keyof HTMLElementTagNameMap>(tag: K, props: Props = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
+/** Makes an element: "on…" props are listeners, everything else attributes; null and false are left out. */
+export function h<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  props: Props = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(props)) {
     if (value === null || value === undefined || value === false) continue;

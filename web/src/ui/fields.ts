@@ -27,7 +27,8 @@ export interface NumberOptions {
 }
 
 const kSliderSteps = 1000;
-const isBusy = (input: HTMLInputElement): boolean => document.activeElement === input && input.dataset['dirty'] === 'true';
+const isBusy = (input: HTMLInputElement): boolean =>
+  document.activeElement === input && input.dataset['dirty'] === 'true';
 
 function labelText(label: string, unit?: string | undefined): HTMLElement {
   const shown = unit && unit !== '1' ? h('span', { class: 'unit' }, ` ${unit}`) : null;
@@ -44,7 +45,13 @@ function parseTyped(text: string, options: NumberOptions): number | null {
 }
 
 function numberInput(options: NumberOptions, label: string): { input: HTMLInputElement; set(value: number): void } {
-  const input = h('input', { type: 'text', inputmode: 'decimal', class: 'number', 'aria-label': label, autocomplete: 'off' });
+  const input = h('input', {
+    type: 'text',
+    inputmode: 'decimal',
+    class: 'number',
+    'aria-label': label,
+    autocomplete: 'off',
+  });
   let shown = NaN;
   const show = (value: number) => {
     shown = value;
@@ -57,14 +64,17 @@ function numberInput(options: NumberOptions, label: string): { input: HTMLInputE
     const value = parseTyped(input.value, options);
     if (value === null) {
       input.setAttribute('aria-invalid', 'true');
-      input.title = `${options.integer ? 'A whole number' : 'A number'} from ${options.minimum ?? '−∞'} to ${options.maximum ?? '∞'}`;
+      const kind = options.integer ? 'A whole number' : 'A number';
+      input.title = `${kind} from ${options.minimum ?? '−∞'} to ${options.maximum ?? '∞'}`;
       return;
     }
     input.title = '';
     show(value);
     options.onInput(value);
   };
-  input.addEventListener('input', () => { input.dataset['dirty'] = 'true'; });
+  input.addEventListener('input', () => {
+    input.dataset['dirty'] = 'true';
+  });
   input.addEventListener('change', commit);
   input.addEventListener('keydown', (event) => {
     if (event.key === 'Enter') commit();
@@ -76,7 +86,12 @@ function numberInput(options: NumberOptions, label: string): { input: HTMLInputE
     show(value);
     options.onInput(value);
   });
-  return { input, set: (value) => { if (!isBusy(input)) show(value); } };
+  return {
+    input,
+    set: (value) => {
+      if (!isBusy(input)) show(value);
+    },
+  };
 }
 
 const clamp = (value: number, o: NumberOptions): number =>
@@ -85,7 +100,8 @@ const clamp = (value: number, o: NumberOptions): number =>
 /** One arrow key press: a hundredth of the range, or of the value's decade where there is no range. */
 function nudgeStep(value: number, options: NumberOptions): number {
   if (options.integer) return 1;
-  const range = (options.softMaximum ?? options.maximum ?? Infinity) - (options.softMinimum ?? options.minimum ?? -Infinity);
+  const range =
+    (options.softMaximum ?? options.maximum ?? Infinity) - (options.softMinimum ?? options.minimum ?? -Infinity);
   if (Number.isFinite(range) && range < 1000) return Math.pow(10, Math.floor(Math.log10(range / 20)));
   return Math.pow(10, Math.floor(Math.log10(Math.max(Math.abs(value), 0.01))) - 1);
 }
@@ -112,12 +128,22 @@ export function numberField(options: NumberOptions): Field<number> {
   const id = uniqueId('field');
   const entry = numberInput(options, options.label);
   entry.input.id = id;
-  const row = h('div', { class: 'field', title: options.description },
-    h('label', { for: id }, labelText(options.label, options.unit)), entry.input);
+  const row = h(
+    'div',
+    { class: 'field', title: options.description },
+    h('label', { for: id }, labelText(options.label, options.unit)),
+    entry.input,
+  );
   if (options.slider === false) return { element: row, set: entry.set };
 
   const scale = sliderScale(options);
-  const slider = h('input', { type: 'range', min: 0, max: kSliderSteps, step: 1, 'aria-label': `${options.label}, slider` });
+  const slider = h('input', {
+    type: 'range',
+    min: 0,
+    max: kSliderSteps,
+    step: 1,
+    'aria-label': `${options.label}, slider`,
+  });
   const describeSlider = (value: number) => {
     slider.setAttribute('aria-valuetext', `${formatNumber(value)} ${options.unit ?? ''}`.trim());
     slider.style.setProperty('--fill', `${(100 * Number(slider.value)) / kSliderSteps}%`);
@@ -137,9 +163,15 @@ export function numberField(options: NumberOptions): Field<number> {
     if (value !== null) moveSlider(value);
   });
   let dragging = false;
-  slider.addEventListener('pointerdown', () => { dragging = true; });
-  slider.addEventListener('pointerup', () => { dragging = false; });
-  slider.addEventListener('pointercancel', () => { dragging = false; });
+  slider.addEventListener('pointerdown', () => {
+    dragging = true;
+  });
+  slider.addEventListener('pointerup', () => {
+    dragging = false;
+  });
+  slider.addEventListener('pointercancel', () => {
+    dragging = false;
+  });
   row.append(slider);
   row.classList.add('with-slider');
   return {
@@ -153,19 +185,36 @@ export function numberField(options: NumberOptions): Field<number> {
 }
 
 /** Components of a vector side by side. */
-export function vectorField(options: Omit<NumberOptions, 'onInput'> & { components: readonly string[]; onInput(value: number[]): void }): Field<readonly number[]> {
+export function vectorField(
+  options: Omit<NumberOptions, 'onInput'> & { components: readonly string[]; onInput(value: number[]): void },
+): Field<readonly number[]> {
   let current: number[] = options.components.map(() => 0);
-  const entries = options.components.map((component, i) => numberInput({
-    ...options,
-    onInput: (value) => {
-      current = current.map((old, k) => (k === i ? value : old));
-      options.onInput(current);
-    },
-  }, `${options.label} ${component}`));
-  const boxes = entries.map((entry, i) => h('span', { class: 'component' },
-    h('span', { class: 'axis', 'aria-hidden': 'true' }, options.components[i]), entry.input));
-  const row = h('div', { class: 'field vector', role: 'group', 'aria-label': options.label, title: options.description },
-    labelText(options.label, options.unit), h('div', { class: 'components' }, ...boxes));
+  const entries = options.components.map((component, i) =>
+    numberInput(
+      {
+        ...options,
+        onInput: (value) => {
+          current = current.map((old, k) => (k === i ? value : old));
+          options.onInput(current);
+        },
+      },
+      `${options.label} ${component}`,
+    ),
+  );
+  const boxes = entries.map((entry, i) =>
+    h(
+      'span',
+      { class: 'component' },
+      h('span', { class: 'axis', 'aria-hidden': 'true' }, options.components[i]),
+      entry.input,
+    ),
+  );
+  const row = h(
+    'div',
+    { class: 'field vector', role: 'group', 'aria-label': options.label, title: options.description },
+    labelText(options.label, options.unit),
+    h('div', { class: 'components' }, ...boxes),
+  );
   return {
     element: row,
     set(value) {
@@ -197,19 +246,29 @@ export function colorField(options: ColorOptions): Field<Vec3> {
     options.onInput(linear);
   };
   const numbers = vectorField({
-    label: `${options.label}, linear`, components: ['R', 'G', 'B'], minimum: 0, maximum: options.maximum,
+    label: `${options.label}, linear`,
+    components: ['R', 'G', 'B'],
+    minimum: 0,
+    maximum: options.maximum,
     onInput: ([r = 0, g = 0, b = 0]) => changed([r, g, b]),
   });
-  const strengthField = bounded ? null : numberField({
-    label: 'Strength', minimum: 0, maximum: options.maximum, softMaximum: options.softMaximum, logarithmic: true,
-    onInput: (strength) => {
-      const [r, g, b] = splitStrength(color).color;
-      changed([r * strength, g * strength, b * strength]);
-    },
-  });
+  const strengthField = bounded
+    ? null
+    : numberField({
+        label: 'Strength',
+        minimum: 0,
+        maximum: options.maximum,
+        softMaximum: options.softMaximum,
+        logarithmic: true,
+        onInput: (strength) => {
+          const [r, g, b] = splitStrength(color).color;
+          changed([r * strength, g * strength, b * strength]);
+        },
+      });
   const show = () => {
     const unlit = Math.max(...color) === 0;
-    if (document.activeElement !== picker) picker.value = hexFromLinear(bounded || unlit ? color : splitStrength(color).color);
+    if (document.activeElement !== picker)
+      picker.value = hexFromLinear(bounded || unlit ? color : splitStrength(color).color);
     numbers.set(color);
     strengthField?.set(splitStrength(color).strength);
   };
@@ -226,8 +285,14 @@ export function colorField(options: ColorOptions): Field<Vec3> {
   numbers.element.classList.remove('field');
   numbers.element.querySelector('.name')?.remove();
   return {
-    element: h('div', { class: 'field color', title: options.description },
-      h('label', { for: id }, labelText(options.label, options.unit && options.unit !== '1' ? options.unit : 'linear')), picker, numbers.element, strengthField?.element),
+    element: h(
+      'div',
+      { class: 'field color', title: options.description },
+      h('label', { for: id }, labelText(options.label, options.unit && options.unit !== '1' ? options.unit : 'linear')),
+      picker,
+      numbers.element,
+      strengthField?.element,
+    ),
     set(value) {
       color = value;
       show();
@@ -235,23 +300,39 @@ export function colorField(options: ColorOptions): Field<Vec3> {
   };
 }
 
-export interface Choice { value: string; title: string; description?: string | undefined }
+export interface Choice {
+  value: string;
+  title: string;
+  description?: string | undefined;
+}
 
-export function selectField(label: string, choices: readonly Choice[], onInput: (value: string) => void): Field<string> {
+export function selectField(
+  label: string,
+  choices: readonly Choice[],
+  onInput: (value: string) => void,
+): Field<string> {
   const id = uniqueId('select');
   const options = choices.map((c) => h('option', { value: c.value, title: c.description }, c.title));
   const select = h('select', { id, onChange: () => onInput(select.value) }, ...options);
   return {
     element: h('div', { class: 'field choice' }, h('label', { for: id }, labelText(label)), select),
-    set(value) { select.value = value; },
+    set(value) {
+      select.value = value;
+    },
   };
 }
 
-export function checkField(label: string, onInput: (value: boolean) => void, description?: string | undefined): Field<boolean> {
+export function checkField(
+  label: string,
+  onInput: (value: boolean) => void,
+  description?: string | undefined,
+): Field<boolean> {
   const id = uniqueId('check');
   const box = h('input', { type: 'checkbox', id, onChange: () => onInput(box.checked) });
   return {
     element: h('div', { class: 'field check', title: description }, h('label', { for: id }, labelText(label)), box),
-    set(value) { box.checked = value; },
+    set(value) {
+      box.checked = value;
+    },
   };
 }

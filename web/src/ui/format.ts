@@ -49,11 +49,24 @@ export function formatCount(value: number): string {
   return Number.isFinite(value) ? Math.round(value).toLocaleString('en') : kMissing;
 }
 
-const kSpellings: Record<string, string> = { pbr: 'PBR', aces: 'ACES', agx: 'AgX', ior: 'IOR', uv: 'UV', vpl: 'VPL', exr: 'EXR' };
+const kSpellings: Record<string, string> = {
+  pbr: 'PBR',
+  aces: 'ACES',
+  agx: 'AgX',
+  ior: 'IOR',
+  uv: 'UV',
+  vpl: 'VPL',
+  exr: 'EXR',
+};
 
 /** "baseColor" → "Base color": what people read for a name of the wire. */
 export function titleFromName(name: string): string {
-  const words = name.replace(/[-_]/g, ' ').replace(/([a-z0-9])([A-Z])/g, '$1 $2').toLowerCase().trim().split(/\s+/);
+  const words = name
+    .replace(/[-_]/g, ' ')
+    .replace(/([a-z0-9])([A-Z])/g, '$1 $2')
+    .toLowerCase()
+    .trim()
+    .split(/\s+/);
   const title = words.map((word) => kSpellings[word] ?? word).join(' ');
   return title.charAt(0).toUpperCase() + title.slice(1);
 }

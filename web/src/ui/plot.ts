@@ -2,12 +2,26 @@ import { h } from './dom';
 import { formatNumber } from './format';
 
 /** One point of the convergence: seconds since the restart, estimated relMSE with its interval. */
-export interface ErrorPoint { seconds: number; error: number; low: number; high: number }
+export interface ErrorPoint {
+  seconds: number;
+  error: number;
+  low: number;
+  high: number;
+}
 
-interface Axis { low: number; high: number } // decades
+interface Axis {
+  low: number;
+  high: number;
+} // decades
 
 const kPad = { left: 38, right: 8, top: 8, bottom: 22 };
-const kInk = { line: '#8fb8ff', band: 'rgba(143,184,255,0.18)', grid: 'rgba(255,255,255,0.07)', text: '#9aa4b2', guide: 'rgba(255,207,112,0.55)' };
+const kInk = {
+  line: '#8fb8ff',
+  band: 'rgba(143,184,255,0.18)',
+  grid: 'rgba(255,255,255,0.07)',
+  text: '#9aa4b2',
+  guide: 'rgba(255,207,112,0.55)',
+};
 
 /** Whole decades that hold all values; at least one. */
 export function decades(values: readonly number[]): Axis {
@@ -25,7 +39,11 @@ export class ErrorPlot {
   private queued = false;
 
   constructor() {
-    this.element = h('canvas', { class: 'plot', role: 'img', 'aria-label': 'Estimated error over time since the last restart' });
+    this.element = h('canvas', {
+      class: 'plot',
+      role: 'img',
+      'aria-label': 'Estimated error over time since the last restart',
+    });
     new ResizeObserver(() => this.queue()).observe(this.element);
   }
 
@@ -35,9 +53,12 @@ export class ErrorPlot {
     this.newest = newest;
     this.points = points.filter((p) => p.seconds > 0 && p.error > 0 && Number.isFinite(p.error));
     const last = this.points.at(-1);
-    this.element.setAttribute('aria-label', last
-      ? `Estimated error over time: ${formatNumber(last.error, 3)} after ${formatNumber(last.seconds, 3)} seconds`
-      : 'Estimated error over time: no estimate yet');
+    this.element.setAttribute(
+      'aria-label',
+      last
+        ? `Estimated error over time: ${formatNumber(last.error, 3)} after ${formatNumber(last.seconds, 3)} seconds`
+        : 'Estimated error over time: no estimate yet',
+    );
     this.queue();
   }
 
@@ -63,8 +84,12 @@ export class ErrorPlot {
 
     const xAxis = decades(this.points.map((p) => p.seconds));
     const yAxis = decades(this.points.map((p) => p.error));
-    const x = (v: number) => kPad.left + ((Math.log10(v) - xAxis.low) / (xAxis.high - xAxis.low)) * (width - kPad.left - kPad.right);
-    const y = (v: number) => height - kPad.bottom - ((Math.log10(Math.max(v, 1e-30)) - yAxis.low) / (yAxis.high - yAxis.low)) * (height - kPad.top - kPad.bottom);
+    const x = (v: number) =>
+      kPad.left + ((Math.log10(v) - xAxis.low) / (xAxis.high - xAxis.low)) * (width - kPad.left - kPad.right);
+    const y = (v: number) =>
+      height -
+      kPad.bottom -
+      ((Math.log10(Math.max(v, 1e-30)) - yAxis.low) / (yAxis.high - yAxis.low)) * (height - kPad.top - kPad.bottom);
     drawGrid(ink, xAxis, yAxis, x, y, width, height);
     if (this.points.length === 0) {
       ink.fillStyle = kInk.text;
@@ -84,7 +109,15 @@ export class ErrorPlot {
 
 type Scale = (v: number) => number;
 
-function drawGrid(ink: CanvasRenderingContext2D, xAxis: Axis, yAxis: Axis, x: Scale, y: Scale, width: number, height: number): void {
+function drawGrid(
+  ink: CanvasRenderingContext2D,
+  xAxis: Axis,
+  yAxis: Axis,
+  x: Scale,
+  y: Scale,
+  width: number,
+  height: number,
+): void {
   ink.strokeStyle = kInk.grid;
   ink.fillStyle = kInk.text;
   ink.lineWidth = 1;

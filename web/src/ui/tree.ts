@@ -18,7 +18,10 @@ export class Tree {
   private known = new Set<string>();
   private selected: string | null = null;
 
-  constructor(label: string, private readonly onSelect: (key: string) => void) {
+  constructor(
+    label: string,
+    private readonly onSelect: (key: string) => void,
+  ) {
     this.element = h('ul', { role: 'tree', class: 'tree', 'aria-label': label });
     this.element.addEventListener('keydown', (event) => this.handleKey(event));
     this.element.addEventListener('click', (event) => this.handleClick(event));
@@ -47,21 +50,33 @@ export class Tree {
     const hasChildren = item.children.length > 0;
     if (item.foldedAtFirst && !this.known.has(item.key)) this.folded.add(item.key);
     this.known.add(item.key);
-    const row = h('li', {
-      role: 'treeitem', 'data-key': item.key, 'aria-level': level, 'aria-selected': false, tabindex: -1,
-      'aria-expanded': hasChildren ? !this.folded.has(item.key) : null,
-    }, h('div', { class: 'row' },
-      h('span', { class: 'twist', 'aria-hidden': 'true' }, hasChildren ? '▾' : ''),
-      h('span', { class: 'label' }, item.label),
-      item.note ? h('span', { class: 'note' }, item.note) : null));
-    if (hasChildren) row.append(h('ul', { role: 'group' }, ...item.children.map((child) => this.makeRow(child, level + 1))));
+    const row = h(
+      'li',
+      {
+        role: 'treeitem',
+        'data-key': item.key,
+        'aria-level': level,
+        'aria-selected': false,
+        tabindex: -1,
+        'aria-expanded': hasChildren ? !this.folded.has(item.key) : null,
+      },
+      h(
+        'div',
+        { class: 'row' },
+        h('span', { class: 'twist', 'aria-hidden': 'true' }, hasChildren ? '▾' : ''),
+        h('span', { class: 'label' }, item.label),
+        item.note ? h('span', { class: 'note' }, item.note) : null,
+      ),
+    );
+    if (hasChildren)
+      row.append(h('ul', { role: 'group' }, ...item.children.map((child) => this.makeRow(child, level + 1))));
     this.rows.set(item.key, row);
     return row;
   }
 
   private keyOf(target: EventTarget | Element | null): string | null {
     const row = target instanceof Element ? target.closest<HTMLElement>('[role=treeitem]') : null;
-    return row && this.element.contains(row) ? row.dataset['key'] ?? null : null;
+    return row && this.element.contains(row) ? (row.dataset['key'] ?? null) : null;
   }
 
   private handleClick(event: MouseEvent): void {
@@ -70,7 +85,8 @@ export class Tree {
     if (key === null || !row) return;
     this.setTabStop(row);
     row.focus({ preventScroll: true });
-    if ((event.target as Element).classList.contains('twist')) this.fold(row, row.getAttribute('aria-expanded') === 'true');
+    if ((event.target as Element).classList.contains('twist'))
+      this.fold(row, row.getAttribute('aria-expanded') === 'true');
     else this.choose(key);
   }
 
@@ -86,7 +102,8 @@ export class Tree {
       ArrowUp: () => this.focusRow(visible[at - 1]),
       Home: () => this.focusRow(visible[0]),
       End: () => this.focusRow(visible.at(-1)),
-      ArrowRight: () => (expanded === 'false' ? this.fold(row, false) : expanded === 'true' ? this.focusRow(visible[at + 1]) : undefined),
+      ArrowRight: () =>
+        expanded === 'false' ? this.fold(row, false) : expanded === 'true' ? this.focusRow(visible[at + 1]) : undefined,
       ArrowLeft: () => (expanded === 'true' ? this.fold(row, true) : this.focusRow(parentRow(row))),
       Enter: () => this.choose(key),
       ' ': () => this.choose(key),
@@ -114,7 +131,9 @@ export class Tree {
   }
 
   private visibleRows(): HTMLLIElement[] {
-    return [...this.rows.values()].filter((row) => !row.parentElement?.closest('[aria-expanded=false]')).sort(byDocument);
+    return [...this.rows.values()]
+      .filter((row) => !row.parentElement?.closest('[aria-expanded=false]'))
+      .sort(byDocument);
   }
 
   private focusRow(row: HTMLLIElement | undefined): void {

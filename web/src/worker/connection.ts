@@ -1,6 +1,13 @@
 import type { ConnectionState, Outgoing } from '../channel';
 import { nowMs } from '../clock';
-import { decodeServer, encodeClient, kSubprotocol, ProtocolError, type ClientMessage, type ServerMessage } from '../protocol/messages.gen';
+import {
+  decodeServer,
+  encodeClient,
+  kSubprotocol,
+  ProtocolError,
+  type ClientMessage,
+  type ServerMessage,
+} from '../protocol/messages.gen';
 import { backoffMs } from './backoff';
 import { asBearer, explainClose, probeServer } from './refusal';
 
@@ -21,7 +28,7 @@ export interface ConnectionHooks {
   hello(): Outgoing;
 }
 
-/** Keeps one socket to the server alive: connects, says hello, reconnects with backoff, and says honestly how it stands. */
+/** Keeps one socket to the server: connects, says hello, reconnects with backoff, and tells honestly how it stands. */
 export class Connection {
   private socket: WebSocket | null = null;
   private greeted = false;
@@ -33,7 +40,11 @@ export class Connection {
   private lastError: { code: string; message: string } | null = null;
   private paused = false;
 
-  constructor(private readonly url: string, private readonly token: string | null, private readonly hooks: ConnectionHooks) {}
+  constructor(
+    private readonly url: string,
+    private readonly token: string | null,
+    private readonly hooks: ConnectionHooks,
+  ) {}
 
   /** Connects now, whatever was planned. */
   open(): void {

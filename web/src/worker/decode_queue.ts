@@ -32,8 +32,8 @@ export function replaces(next: FrameHeader, waiting: FrameHeader): boolean {
 }
 
 /**
- * Decodes one frame at a time; of those that wait only the newest is kept. What is on screen never goes back to an older
- * revision, and a frame that is not shown is acknowledged as dropped.
+ * Decodes one frame at a time; of those that wait only the newest is kept. What is on screen never goes back to an
+ * older revision, and a frame that is not shown is acknowledged as dropped.
  */
 export class DecodeQueue<Picture> {
   private waiting: EncodedFrame[] = [];

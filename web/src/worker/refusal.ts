@@ -14,7 +14,7 @@ const kCloseWords: Record<number, string> = {
 
 export function explainClose(code: number, reason: string, lastError: string | null): string {
   const words = kCloseWords[code] ?? `the connection was closed with code ${code}`;
-  const detail = reason || (code === 1006 ? '' : lastError ?? '');
+  const detail = reason || (code === 1006 ? '' : (lastError ?? ''));
   return detail ? `${words}: ${detail}` : words;
 }
 
@@ -33,10 +33,14 @@ export async function probeServer(socketUrl: string): Promise<{ reason: string; 
   const ready = new URL('readyz', socketUrl.replace(/^ws/, 'http'));
   try {
     const reply = await fetch(ready, { cache: 'no-store', signal: AbortSignal.timeout(3000) });
-    if (reply.status === 401 || reply.status === 403) return { reason: 'the token is missing or wrong', hopeless: true };
+    if (reply.status === 401 || reply.status === 403)
+      return { reason: 'the token is missing or wrong', hopeless: true };
     const text = (await reply.text()).trim().slice(0, 120);
     if (reply.status === 503) return { reason: text || 'the server is not ready', hopeless: false };
-    return { reason: 'the server is up but refuses the connection: no valid token, a foreign origin, or too many clients', hopeless: false };
+    return {
+      reason: 'the server is up but refuses the connection: no valid token, a foreign origin, or too many clients',
+      hopeless: false,
+    };
   } catch {
     return null;
   }

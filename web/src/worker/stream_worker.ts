@@ -35,8 +35,12 @@ function start(canvas: OffscreenCanvas, url: string, token: string | null, clien
       const { frameId } = frame.header;
       link.send({ op: 'ackFrame', frameId, decodeMs: presentedMs - frame.receivedMs, dropped });
       const report: FrameReport = {
-        header: frame.header, dropped, presentedMs, receivedMs: frame.receivedMs,
-        decodeMs: decodeMs.get(frame) ?? 0, bytes: frame.payload.byteLength + kFrameHeaderBytes,
+        header: frame.header,
+        dropped,
+        presentedMs,
+        receivedMs: frame.receivedMs,
+        decodeMs: decodeMs.get(frame) ?? 0,
+        bytes: frame.payload.byteLength + kFrameHeaderBytes,
       };
       tell({ type: 'frame', frame: report });
     },
@@ -85,11 +89,23 @@ function setHidden(hidden: boolean): void {
 
 scope.onmessage = async ({ data }: MessageEvent<ToWorker>) => {
   switch (data.type) {
-    case 'start': start(data.canvas, data.url, data.token, data.client); break;
-    case 'send': send(data.ticket, data.message); break;
-    case 'retry': connection?.hurry(); break;
-    case 'hidden': setHidden(data.hidden); break;
-    case 'hash': if (presenter) tell({ type: 'hash', ticket: data.ticket, hash: await presenter.hash() }); break;
-    case 'mean': if (presenter) tell({ type: 'mean', ticket: data.ticket, rgb: presenter.mean(data.area) }); break;
+    case 'start':
+      start(data.canvas, data.url, data.token, data.client);
+      break;
+    case 'send':
+      send(data.ticket, data.message);
+      break;
+    case 'retry':
+      connection?.hurry();
+      break;
+    case 'hidden':
+      setHidden(data.hidden);
+      break;
+    case 'hash':
+      if (presenter) tell({ type: 'hash', ticket: data.ticket, hash: await presenter.hash() });
+      break;
+    case 'mean':
+      if (presenter) tell({ type: 'mean', ticket: data.ticket, rgb: presenter.mean(data.area) });
+      break;
   }
 };
