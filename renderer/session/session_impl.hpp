@@ -36,7 +36,7 @@ struct Session::Impl {
   Result<void> updateBvh(const gpu::SyncReport& report);
   Result<void> writeCamera();
   Result<void> restartFilm(CostClass cost);
-  TechniqueContext context() const;
+  TechniqueContext context();
 
   // session_edits.cpp
   Result<void> drainMailbox();

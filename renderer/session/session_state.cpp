@@ -135,7 +135,7 @@ Result<void> Session::Impl::writeCamera() {
   return vk::uploadArray(device, camera, std::span<const shared::CameraData>(&data, 1));
 }
 
-TechniqueContext Session::Impl::context() const {
+TechniqueContext Session::Impl::context() {
   return {device, mirror, bvh, camera, *film, *statistics, config.seed, config.firstSample, config.sampleCount};
 }
 
