@@ -10,7 +10,7 @@ using ::testing::HasSubstr;
 
 TEST(SendScript, ReadsOneMessageALineAndPassesOverBlankOnes) {
   const Result<std::vector<ScriptMessage>> script =
-      parseScript("{\"op\":\"ping\"}\n\n  \t\r\n{\"op\":\"wait\",\"steps\":4,\"seq\":17}\r\n{ \"op\": \"describe\" }", "s");
+      parseScript("{\"op\":\"ping\"}\n\n \t\r\n{\"op\":\"wait\",\"steps\":4,\"seq\":17}\r\n{ \"op\":\"describe\"}", "s");
   ASSERT_TRUE(script.ok()) << script.error().text();
   ASSERT_EQ(script->size(), 3u);
   EXPECT_EQ((*script)[0].line, 1u);
