@@ -13,8 +13,8 @@ namespace {
 
 using namespace shared;
 
-// Nodes that a block's tree may be high, so that some levels are left for the top; 3 * 4^12 triangles fit even then.
-constexpr uint32_t kBlockHeight = 12;
+// Of the binary tree: smaller than what leaves can hold, so that BvhCollapse has a choice.
+constexpr uint32_t kSmallLeaf = 2;
 
 // Triangles without an area have no normal and cannot be hit. Differences and products of floats are exact enough in double
 // for this to find all that lie on a line.
@@ -39,7 +39,7 @@ BvhBlock buildBlock(const BvhBuilder& builder, const TriangleBlock& source) {
     triangles.push_back(i);
   }
 
-  block.tree = widenTriangles(builder.build(boxes, kBvhLeafTriangles), boxes, kBlockHeight);
+  block.tree = widenTriangles(builder.build(boxes, kSmallLeaf), boxes);
   block.triangles.reserve(block.tree.items.size() * kBvhTriangleTexels);
   for (const uint32_t item : block.tree.items) {
     const glm::vec3* corners = &source.corners[3 * size_t(triangles[item])];
@@ -67,16 +67,14 @@ Result<void> SceneBvh::update(vk::Device& device, std::span<const TriangleBlock>
 
   std::vector<Box> boxes;
   std::vector<uint32_t> blockOfItem;
-  uint32_t blockHeight = 1;
+  std::vector<uint32_t> heights;
   for (uint32_t i = 0; i < m_blocks.size(); ++i) {
     if (m_blocks[i].triangles.empty()) continue;
     boxes.push_back(m_blocks[i].box);
     blockOfItem.push_back(i);
-    blockHeight = std::max(blockHeight, m_blocks[i].tree.height);
+    heights.push_back(m_blocks[i].tree.height);
   }
-  // A graft counts in both heights.
-  const WideBvh top = widenTop(m_builder.build(boxes, 1), boxes, kBvhMaxHeight + 1 - blockHeight);
-  if (top.height + blockHeight > kBvhMaxHeight + 1) return Error{"limit", "the scene's BVH is too deep", ""};
+  const WideBvh top = widenTop(m_builder.build(boxes, 1), boxes, heights);
   auto tables = layOut(top, blockOfItem, m_blocks);
   if (!tables) return tables.error();
   if (auto stored = store(device, *tables); !stored) return stored;

@@ -1,9 +1,10 @@
 #include "renderer/visibility/bvh_wide.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <tuple>
 
 #include "renderer/base/check.hpp"
+#include "renderer/visibility/bvh_collapse.hpp"
 #include "renderer/visibility/bvh_encode.hpp"
 
 namespace limn {
@@ -13,13 +14,10 @@ using namespace shared;
 
 constexpr uint32_t kWidth = 4;
 constexpr uint32_t kNoNode = ~0u;
+constexpr uint32_t kSpareLevels = 4;
 
-// Levels of four-way nodes that `items` need at least.
-uint32_t levelsNeeded(uint64_t items, uint64_t leafSize) {
-  uint32_t levels = 1;
-  for (uint64_t room = kWidth * leafSize; room < items; room *= kWidth) ++levels;
-  return levels;
-}
+// Four to the power of `levels`: the smallest trees that fit below so many nodes on a path.
+constexpr uint64_t room(uint32_t levels) { return uint64_t(1) << 2 * levels; }
 
 // A subtree that is still to be written: a node of the binary tree, or (node == kNoNode) just a range of items.
 struct Part {
@@ -31,12 +29,14 @@ struct Part {
 
 class Widener {
  public:
-  Widener(const BvhTree& tree, std::span<const Box> boxes, bool top, uint32_t maxHeight)
-      : m_tree(tree), m_boxes(boxes), m_top(top), m_maxHeight(maxHeight), m_items(tree.items), m_ends(tree.nodes.size()) {
-    // Children follow their parent, and so do their items.
-    for (size_t i = tree.nodes.size(); i-- > 0;) {
-      const BvhTree::Node& node = tree.nodes[i];
-      m_ends[i] = node.count > 0 ? node.first + node.count : m_ends[node.right];
+  /// `heights`: of the items of a top tree; empty for triangles.
+  Widener(const BvhTree& tree, std::span<const Box> boxes, std::span<const uint32_t> heights)
+      : m_tree(tree), m_boxes(boxes), m_heights(heights), m_items(tree.items), m_collapse(tree, leafSize()) {
+    if (isTop()) {
+      m_maxHeight = kBvhMaxHeight;
+    } else {
+      while (room(m_maxHeight) * kBvhLeafTriangles < boxes.size()) ++m_maxHeight;
+      m_maxHeight += kSpareLevels;
     }
   }
 
@@ -47,87 +47,102 @@ class Widener {
       m_wide.height = 1;
     } else {
       const Part root = partOf(0);
-      if (m_top && isLeaf(root)) graft(root, 0, 1);
+      LIMN_CHECK_LE(weight(root), room(m_maxHeight));
+      if (isTop() && isLeaf(root)) graft(root, 0, 1);
       else write(root, 0, 1);
     }
     return std::move(m_wide);
   }
 
  private:
-  uint32_t leafSize() const { return m_top ? 1 : kBvhLeafTriangles; }
+  bool isTop() const { return !m_heights.empty(); }
+  uint32_t leafSize() const { return isTop() ? 1 : kBvhLeafTriangles; }
+
+  // How much of a room() the items take: 4^height each in a top tree, else their share of a leaf.
+  uint64_t weight(const Part& part) const {
+    if (!isTop()) return (part.count + kBvhLeafTriangles - 1) / kBvhLeafTriangles;
+    uint64_t sum = 0;
+    for (uint32_t i = part.first; i < part.first + part.count; ++i) sum += room(m_heights[m_items[i]]);
+    return sum;
+  }
 
   Part partOf(uint32_t node) const {
-    uint32_t leftmost = node;
-    while (m_tree.nodes[leftmost].count == 0) leftmost = m_tree.nodes[leftmost].left;
-    const uint32_t first = m_tree.nodes[leftmost].first;
-    return {m_tree.nodes[node].box, node, first, m_ends[node] - first};
+    const auto [first, count] = m_collapse.items(node);
+    return {m_tree.nodes[node].box, node, first, count};
   }
 
   bool isLeaf(const Part& part) const {
-    return part.node == kNoNode ? part.count <= leafSize() : m_tree.nodes[part.node].count > 0;
+    return part.node == kNoNode ? part.count <= leafSize() : m_collapse.isLeaf(part.node);
   }
 
-  // Opens the child of the largest area until there are four.
-  std::vector<Part> openBySurface(const Part& part) const {
-    std::vector<Part> parts{part};
-    while (parts.size() < kWidth) {
-      auto widest = parts.end();
-      for (auto it = parts.begin(); it != parts.end(); ++it) {
-        if (!isLeaf(*it) && (widest == parts.end() || it->box.halfArea() > widest->box.halfArea())) widest = it;
-      }
-      if (widest == parts.end()) break;
-      const BvhTree::Node& node = m_tree.nodes[widest->node];
-      *widest = partOf(node.left);
-      parts.push_back(partOf(node.right));
-    }
+  std::vector<Part> openByCost(const Part& part) const {
+    if (isLeaf(part)) return {part};
+    std::vector<Part> parts;
+    for (const uint32_t child : m_collapse.children(part.node)) parts.push_back(partOf(child));
     return parts;
   }
 
-  // Halves a range of items across its widest axis; ties go by index, so that the order of the input does not matter.
-  std::pair<Part, Part> halve(const Part& part) {
-    const auto begin = m_items.begin() + part.first, end = begin + part.count, middle = begin + (part.count + 1) / 2;
+  // Sorts a range of items along its widest axis, in a top tree higher ones first; ties go by index.
+  void sortItems(const Part& part) {
+    const auto begin = m_items.begin() + part.first, end = begin + part.count;
     Box centers;
     auto center = [this](uint32_t item) { return m_boxes[item].lower * 0.5f + m_boxes[item].upper * 0.5f; };
     std::for_each(begin, end, [&](uint32_t item) { centers.add(center(item)); });
     const glm::vec3 extent = centers.upper - centers.lower;
     const int axis = extent.x >= extent.y ? (extent.x >= extent.z ? 0 : 2) : (extent.y >= extent.z ? 1 : 2);
-    std::sort(begin, end, [&](uint32_t a, uint32_t b) {
-      return std::pair(center(a)[axis], a) < std::pair(center(b)[axis], b);
-    });
-    auto range = [this](auto from, auto to) {
-      Part half{{}, kNoNode, uint32_t(from - m_items.begin()), uint32_t(to - from)};
-      std::for_each(from, to, [&](uint32_t item) { half.box.add(m_boxes[item]); });
-      return half;
-    };
-    return {range(begin, middle), range(middle, end)};
+    auto key = [&](uint32_t item) { return std::tuple(isTop() ? ~m_heights[item] : 0u, center(item)[axis], item); };
+    std::sort(begin, end, [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
   }
 
+  Part range(uint32_t first, uint32_t count) const {
+    Part part{{}, kNoNode, first, count};
+    for (uint32_t i = first; i < first + count; ++i) part.box.add(m_boxes[m_items[i]]);
+    return part;
+  }
+
+  // Four parts of equal count, by halving twice.
   std::vector<Part> openByCount(const Part& part) {
     std::vector<Part> parts{part};
     for (int round = 0; round < 2; ++round) {
       std::vector<Part> halves;
       for (const Part& p : parts) {
-        if (p.count <= leafSize()) {
-          halves.push_back({p.box, kNoNode, p.first, p.count});
-          continue;
-        }
-        auto [left, right] = halve(p);
-        halves.push_back(left);
-        halves.push_back(right);
+        const uint32_t leftCount = p.count <= kBvhLeafTriangles ? p.count : (p.count + 1) / 2;
+        if (leftCount < p.count) sortItems(p);
+        halves.push_back(range(p.first, leftCount));
+        if (leftCount < p.count) halves.push_back(range(p.first + leftCount, p.count - leftCount));
       }
       parts = std::move(halves);
     }
     return parts;
   }
 
+  // At most four parts, each no heavier than the least room that four times holds them all. Weights are powers of four and the
+  // heavy go first, so what is left of a part is always a multiple of the next weight, and parts fill without a gap.
+  std::vector<Part> openByWeight(const Part& part) {
+    sortItems(part);
+    uint64_t most = 1;
+    while (most * kWidth < weight(part)) most *= kWidth;
+    std::vector<Part> parts;
+    for (uint32_t i = part.first; i < part.first + part.count;) {
+      const uint32_t first = i;
+      uint64_t sum = 0;
+      while (i < part.first + part.count && sum + room(m_heights[m_items[i]]) <= most) sum += room(m_heights[m_items[i++]]);
+      parts.push_back(range(first, i - first));
+    }
+    LIMN_CHECK_LE(parts.size(), size_t(kWidth));
+    return parts;
+  }
+
   // Writes the subtree of `part` with its root at `slot`, the level-th node of its path.
   void write(const Part& part, uint32_t slot, uint32_t level) {
     m_wide.height = std::max(m_wide.height, level);
-    const uint32_t highest = m_top ? m_maxHeight - 1 : m_maxHeight;  // below a top's nodes come its grafts
-    const uint32_t roomLeft = highest > level ? highest - level + 1 : 1;
-    const bool equalShares = part.node == kNoNode || levelsNeeded(part.count, leafSize()) >= roomLeft;
-    std::vector<Part> children = equalShares ? openByCount(part) : openBySurface(part);
-    auto isInner = [this](const Part& p) { return m_top || !isLeaf(p); };
+    std::vector<Part> children;
+    if (part.node != kNoNode) children = openByCost(part);
+    auto fits = [&](const Part& p) { return weight(p) <= room(m_maxHeight - level); };
+    if (part.node == kNoNode || !std::all_of(children.begin(), children.end(), fits)) {
+      children = isTop() ? openByWeight(part) : openByCount(part);
+    }
+    auto isInner = [this](const Part& p) { return isTop() || !isLeaf(p); };
     std::stable_partition(children.begin(), children.end(), isInner);
     const uint32_t innerCount = uint32_t(std::count_if(children.begin(), children.end(), isInner));
 
@@ -142,7 +157,7 @@ class Widener {
     m_wide.nodes.resize(childBase + innerCount);
     m_wide.nodes[slot] = encodeNode(part.box, encoded, innerCount, childBase, triangleBase);
     for (uint32_t i = 0; i < innerCount; ++i) {
-      if (m_top && isLeaf(children[i])) graft(children[i], childBase + i, level + 1);
+      if (isTop() && isLeaf(children[i])) graft(children[i], childBase + i, level + 1);
       else write(children[i], childBase + i, level + 1);
     }
   }
@@ -155,21 +170,20 @@ class Widener {
 
   const BvhTree& m_tree;
   std::span<const Box> m_boxes;
-  bool m_top;
-  uint32_t m_maxHeight;
+  std::span<const uint32_t> m_heights;
+  uint32_t m_maxHeight = 0;
   std::vector<uint32_t> m_items;
-  std::vector<uint32_t> m_ends;  // of each binary node's items
+  BvhCollapse m_collapse;
   WideBvh m_wide;
 };
 
 }  // namespace
 
-WideBvh widenTriangles(const BvhTree& tree, std::span<const Box> boxes, uint32_t maxHeight) {
-  return Widener(tree, boxes, false, maxHeight).run();
-}
+WideBvh widenTriangles(const BvhTree& tree, std::span<const Box> boxes) { return Widener(tree, boxes, {}).run(); }
 
-WideBvh widenTop(const BvhTree& tree, std::span<const Box> boxes, uint32_t maxHeight) {
-  return Widener(tree, boxes, true, maxHeight).run();
+WideBvh widenTop(const BvhTree& tree, std::span<const Box> boxes, std::span<const uint32_t> heights) {
+  LIMN_CHECK_EQ(boxes.size(), heights.size());
+  return Widener(tree, boxes, heights).run();
 }
 
 }  // namespace limn
