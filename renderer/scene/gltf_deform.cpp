@@ -18,10 +18,11 @@ void addTarget(const Document& document, const std::map<std::string, int>& targe
   }
 }
 
-void morph(const Document& document, const tinygltf::Primitive& source, const std::vector<double>& weights,
-           Primitive& vertices) {
+void morph(Document& document, const tinygltf::Primitive& source, const std::vector<double>& weights,
+           const std::string& pointer, Primitive& vertices) {
   for (size_t t = 0; t < source.targets.size() && t < weights.size(); ++t) {
     if (weights[t] == 0.0) continue;
+    document.spend(vertices.positions.size(), pointer + "/targets");
     addTarget(document, source.targets[t], "POSITION", weights[t], vertices.positions);
     addTarget(document, source.targets[t], "NORMAL", weights[t], vertices.normals);
     addTarget(document, source.targets[t], "TANGENT", weights[t], vertices.tangents);
@@ -70,9 +71,9 @@ void skin(const std::vector<glm::dmat4>& joints, const std::string& pointer, Att
 
 }  // namespace
 
-void deform(const Document& document, const tinygltf::Primitive& source, const Deformation& deformation,
+void deform(Document& document, const tinygltf::Primitive& source, const Deformation& deformation,
             const std::string& pointer, Attributes& attributes) {
-  morph(document, source, deformation.morphWeights, attributes.vertices);
+  morph(document, source, deformation.morphWeights, pointer, attributes.vertices);
   if (!deformation.localFromBind.empty() && !attributes.joints.empty())
     skin(deformation.localFromBind, pointer, attributes);
 }

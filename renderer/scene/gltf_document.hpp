@@ -35,7 +35,10 @@ struct Document {
   nlohmann::json json;    ///< all of the document; materials, lights, cameras and extensions are read from here
   tinygltf::Model model;  ///< buffers, accessors, meshes, nodes, skins and scenes, after checkStructure
   Reporter reporter;
+  uint64_t work = 0;  ///< morphed vertices and placed joints so far
 
+  /// Counts work that a small file can ask for many times over. Throws Fault limit at `pointer`.
+  void spend(uint64_t items, const std::string& pointer);
   Value root() const { return Value(json); }
   size_t count(const char* list) const;  ///< elements of a top-level list, 0 when absent
 };

@@ -7,9 +7,18 @@ namespace {
 
 const nlohmann::json kEmptyList = nlohmann::json::array();
 
-/// Deepest nesting of brackets outside strings.
-uint32_t nestingOf(std::string_view text) {
-  uint32_t depth = 0, deepest = 0;
+/// A parsed value costs up to a hundred bytes, its text as little as two.
+constexpr uint64_t kMaxValues = 32'000'000;
+
+struct Extent {
+  uint32_t depth = 0;   ///< deepest nesting of brackets
+  uint64_t values = 1;  ///< at most as many
+};
+
+/// Looks at brackets and commas outside strings.
+Extent extentOf(std::string_view text) {
+  Extent extent;
+  uint32_t depth = 0;
   bool inString = false;
   for (size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -19,12 +28,15 @@ uint32_t nestingOf(std::string_view text) {
     } else if (c == '"') {
       inString = true;
     } else if (c == '{' || c == '[') {
-      deepest = std::max(deepest, ++depth);
+      extent.depth = std::max(extent.depth, ++depth);
+      ++extent.values;
     } else if ((c == '}' || c == ']') && depth > 0) {
       --depth;
+    } else if (c == ',') {
+      ++extent.values;
     }
   }
-  return deepest;
+  return extent;
 }
 
 std::string shown(double v) {
@@ -173,8 +185,12 @@ std::vector<double> Value::numbers(const char* key, size_t count) const {
 }
 
 nlohmann::json parseJson(std::string_view text, uint32_t maxDepth) {
-  if (nestingOf(text) > maxDepth) {
+  const Extent extent = extentOf(text);
+  if (extent.depth > maxDepth) {
     gltf::fail("limit", "the JSON nests deeper than " + std::to_string(maxDepth) + " levels", "");
+  }
+  if (extent.values > kMaxValues) {
+    gltf::fail("limit", "the JSON holds more than " + std::to_string(kMaxValues) + " values", "");
   }
   try {
     return nlohmann::json::parse(text.begin(), text.end());

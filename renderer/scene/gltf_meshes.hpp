@@ -22,7 +22,7 @@ struct Attributes {
 
 /// Moves positions, normals and tangents by morph targets, then by the skin. `pointer` is the primitive's place. Throws
 /// Fault.
-void deform(const Document& document, const tinygltf::Primitive& source, const Deformation& deformation,
+void deform(Document& document, const tinygltf::Primitive& source, const Deformation& deformation,
             const std::string& pointer, Attributes& attributes);
 
 /// Mesh `index` as triangles, deformed. Counts towards the limits. Throws Fault.

@@ -193,6 +193,7 @@ class NodeReader {
   /// glTF places a skinned mesh by its joints alone; undoing the node's own matrix keeps the mesh on its node.
   std::vector<glm::dmat4> jointMatrices(uint32_t i, uint32_t skinIndex) {
     const tinygltf::Skin& skin = m_document.model.skins[skinIndex];
+    m_document.spend(skin.joints.size(), pointerOf("nodes", i, "skin"));
     std::vector<float> inverseBind;
     if (skin.inverseBindMatrices >= 0) inverseBind = readFloats(m_document, skin.inverseBindMatrices, 16);
     const glm::dmat4 localFromWorld = glm::inverse(m_world[i]);

@@ -108,6 +108,11 @@ LoadReport Reporter::take() {
   return std::move(m_report);
 }
 
+void Document::spend(uint64_t items, const std::string& pointer) {
+  work += items;
+  if (work > limits.maxVertices) fail("limit", "morph targets and skins ask for too much work", pointer);
+}
+
 size_t Document::count(const char* list) const { return root().list(list).size(); }
 
 }  // namespace limn::gltf

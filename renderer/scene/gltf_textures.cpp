@@ -64,7 +64,12 @@ std::vector<uint8_t> Textures::fileBytes(const Value& image) {
   const auto view = image.find("bufferView");
   const auto uri = image.find("uri");
   if (!view == !uri) image.fail("bad-file", "an image has either a URI or a bufferView");
-  if (uri) return readUri(m_document.container, uri->asString(), m_document.limits.maxFileBytes, uri->pointer());
+  if (uri) {
+    const uint64_t left = m_document.limits.maxFileBytes - m_encodedBytes;
+    std::vector<uint8_t> bytes = readUri(m_document.container, uri->asString(), left, uri->pointer());
+    m_encodedBytes += bytes.size();
+    return bytes;
+  }
   const tinygltf::BufferView& range =
       m_document.model.bufferViews[view->asIndex(m_document.model.bufferViews.size(), "bufferView")];
   const auto begin = m_document.model.buffers[size_t(range.buffer)].data.begin() + std::ptrdiff_t(range.byteOffset);

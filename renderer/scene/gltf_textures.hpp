@@ -20,6 +20,7 @@ class Textures {
 
   Document& m_document;
   Scene& m_scene;
+  uint64_t m_encodedBytes = 0;         // of the image files read so far
   std::vector<int32_t> m_sceneImages;  // by glTF image; kNone: not decoded yet
 };
 

@@ -243,6 +243,16 @@ TEST(GltfMorph, WeightsOfTheNodeGoBeforeThoseOfTheMesh) {
   EXPECT_EQ(first(3), glm::vec3(0));
 }
 
+TEST(GltfMorph, TheWorkOfManyTargetsIsLimited) {
+  GltfBuilder b = withMorph();
+  b.doc["meshes"][0]["weights"] = {1, 1};
+  LoadOptions options;
+  options.limits.maxVertices = 8;
+  EXPECT_EQ(b.refusal(options), "loaded");
+  options.limits.maxVertices = 7;
+  EXPECT_EQ(b.refusal(options), "limit test.glb#/meshes/0/primitives/0/targets");
+}
+
 TEST(GltfMorph, FlatNormalsFollowTheMorphedShape) {
   GltfBuilder b = withMorph();
   json& primitive = b.doc["meshes"][0]["primitives"][0];
@@ -289,6 +299,16 @@ TEST(GltfSkin, InverseBindMatricesApplyFirst) {
   const Scene scene = b.mustLoad().scene;
   const Primitive& p = scene.meshes[0].primitives[0];
   expectNear(glm::dvec3(p.positions[1]), {1, 0, 0}, 1e-6);
+}
+
+TEST(GltfSkin, TheWorkOfManyJointsIsLimited) {
+  GltfBuilder b = withSkin();
+  b.doc["skins"][0]["joints"] = std::vector<int>(9, 1);
+  LoadOptions options;
+  options.limits.maxVertices = 9;
+  EXPECT_EQ(b.refusal(options), "loaded");
+  options.limits.maxVertices = 8;
+  EXPECT_EQ(b.refusal(options), "limit test.glb#/nodes/0/skin");
 }
 
 TEST(GltfSkin, JointsBeyondTheSkinAreRefused) {
