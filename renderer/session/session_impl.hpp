@@ -98,6 +98,7 @@ struct Session::Impl {
   double restartedAt = 0.0, editReceivedAt = 0.0, publishedAt = 0.0;
   uint64_t raysAtRestart = 0;
   double sampledSeconds = 0.0;          ///< device time since the restart
+  double sampledAtFrame = 0.0;          ///< of which the last picture knew
   bool frameOfState = false;            ///< a picture of the present state was published
   bool showAgain = false;               ///< the display settings changed
   bool newSamples = false;              ///< since the last publication

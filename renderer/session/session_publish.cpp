@@ -78,7 +78,8 @@ Result<std::shared_ptr<const Frame>> Session::Impl::makeFrame() {
   info.errorHigh = float(error.high);
   info.msSinceEdit = editReceivedAt > 0.0 ? float((end - editReceivedAt) * 1e3) : 0.0f;
   info.discardedSamples = technique->discardedSamples();
-  info.stages = {{"sample", float(sampledSeconds * 1e3)}, {"resolve", float((end - begin) * 1e3)}};
+  info.stages = {{"sample", float((sampledSeconds - sampledAtFrame) * 1e3)}, {"resolve", float((end - begin) * 1e3)}};
+  sampledAtFrame = sampledSeconds;
   for (const auto& [client, seq] : appliedSeq) info.applied.push_back({client, seq});
   return std::shared_ptr<const Frame>(std::move(frame));
 }

@@ -160,7 +160,7 @@ Result<void> Session::Impl::restartFilm(CostClass cost) {
   error.relMse = error.high = std::numeric_limits<double>::infinity();
   restartedAt = nowSeconds();
   raysAtRestart = technique->raysTraced();
-  sampledSeconds = 0.0;
+  sampledSeconds = sampledAtFrame = 0.0;
   frameOfState = newSamples = false;
   ++status.restarts;
   return {};

@@ -21,29 +21,40 @@ vec3 valueOf(uint pixel) {
 
 uint pixelAt(ivec2 p) { return uint(p.y) * push.width + uint(p.x); }
 
-// Bilinear between the four pixels of the coarse grid around `p` that have samples.
-vec3 fillFromGrid(ivec2 p) {
-  int stride = int(push.stride);
+// Bilinear between the pixels around `p` of the grid of `stride` that have samples; false when one of them has none.
+bool fillFromGrid(ivec2 p, int stride, out vec3 color) {
   ivec2 cell = p / stride;
   vec2 f = vec2(p - cell * stride) / float(stride);
   vec3 sum = vec3(0.0);
   float weights = 0.0;
+  bool whole = true;
   for (int k = 0; k < 4; ++k) {
     ivec2 corner = ivec2(k & 1, k >> 1);
     ivec2 q = (cell + corner) * stride;
-    if (q.x >= int(push.width) || q.y >= int(push.height) || filmMean[pixelAt(q)].w <= 0.0) continue;
-    float w = (corner.x == 1 ? f.x : 1.0 - f.x) * (corner.y == 1 ? f.y : 1.0 - f.y) + 1e-6;
-    sum += w * valueOf(pixelAt(q));
+    if (q.x >= int(push.width) || q.y >= int(push.height)) continue;
+    bool sampled = filmMean[pixelAt(q)].w > 0.0;
+    whole = whole && sampled;
+    float w = sampled ? (corner.x == 1 ? f.x : 1.0 - f.x) * (corner.y == 1 ? f.y : 1.0 - f.y) + 1e-6 : 0.0;
+    sum += w > 0.0 ? w * valueOf(pixelAt(q)) : vec3(0.0);
     weights += w;
   }
-  return weights > 0.0 ? sum / weights : vec3(0.0);
+  color = weights > 0.0 ? sum / weights : vec3(0.0);
+  return whole;
+}
+
+// While a level is under way, the part of the picture that has it is filled from it, the rest from the one before.
+vec3 fill(ivec2 p) {
+  vec3 fine, coarse;
+  bool whole = push.stride > 1u && fillFromGrid(p, int(push.stride) / 2, fine);
+  fillFromGrid(p, int(push.stride), coarse);
+  return whole ? fine : coarse;
 }
 
 void main() {
   ivec2 p = ivec2(gl_GlobalInvocationID.xy);
   if (p.x >= int(push.width) || p.y >= int(push.height)) return;
   uint pixel = pixelAt(p);
-  vec3 color = filmMean[pixel].w > 0.0 || push.stride == 0u ? valueOf(pixel) : fillFromGrid(p);
+  vec3 color = filmMean[pixel].w > 0.0 || push.stride == 0u ? valueOf(pixel) : fill(p);
   bool radiance = push.view <= kViewIndirect;
   color = radiance ? toneMap(max(color, vec3(0.0)) * push.exposure, push.toneMap) : color;
   outputRgba[pixel] = packUnorm4x8(vec4(linearToSrgb(color), 1.0));
