@@ -1,0 +1,181 @@
+// Whatever was edited in whatever order, the picture is the one that a fresh load of the result gives, bit for bit.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+
+#include "renderer/gpu/needs_constants.hpp"
+#include "tests/support/rich_scene.hpp"
+#include "tests/support/session_fixture.hpp"
+
+namespace limn::test {
+namespace {
+
+constexpr uint32_t kSequences = 200;
+
+/// Seeded choices; the same seed gives the same sequence.
+class Dice {
+ public:
+  explicit Dice(uint32_t seed) : m_engine(seed * 7919u + 17u) {}
+  uint32_t below(uint32_t n) { return uint32_t(m_engine() % n); }
+  bool chance(uint32_t oneIn) { return below(oneIn) == 0; }
+  float real(float low, float high) { return low + (high - low) * float(m_engine() % 4096) / 4095.0f; }
+  glm::vec3 color() { return {real(0, 1), real(0, 1), real(0, 1)}; }
+  glm::dvec3 place(double extent) { return extent * glm::dvec3(real(-1, 1), real(-1, 1), real(-1, 1)); }
+  template <class T>
+  std::optional<T> maybe(T value) { return chance(2) ? std::optional<T>(value) : std::nullopt; }
+
+ private:
+  std::mt19937 m_engine;
+};
+
+Edit materialEdit(Dice& dice, const Scene& scene) {
+  SetMaterial e;
+  e.material = dice.below(uint32_t(scene.materials.size()));
+  e.baseColor = dice.maybe(glm::vec4(dice.color(), dice.real(0.2f, 1.0f)));
+  e.roughness = dice.maybe(dice.chance(5) ? 0.0f : dice.real(0.05f, 1.0f));
+  e.metallic = dice.maybe(dice.chance(2) ? 0.0f : dice.real(0.0f, 1.0f));
+  e.ior = dice.maybe(dice.real(1.0f, 2.0f));
+  if (dice.chance(4)) e.emission = dice.chance(2) ? glm::vec3(0.0f) : 3.0f * dice.color();
+  if (dice.chance(4)) e.alphaMode = AlphaMode(dice.below(3));
+  if (dice.chance(4)) e.transmission = dice.chance(2) ? 0.0f : dice.real(0.3f, 1.0f);
+  if (dice.chance(4)) e.thickness = dice.chance(2) ? 0.0f : 0.3f;
+  if (dice.chance(6)) e.alphaCutoff = dice.real(0.0f, 1.0f);
+  if (dice.chance(6)) e.attenuationColor = dice.color();
+  if (dice.chance(6)) e.normalScale = dice.real(-2.0f, 2.0f);
+  return e;
+}
+
+Edit lightEdit(Dice& dice, const Scene& scene) {
+  SetLight e;
+  e.light = dice.below(uint32_t(scene.lights.size()));
+  e.color = dice.maybe(dice.color());
+  e.intensity = dice.maybe(dice.chance(4) ? 0.0f : dice.real(0.1f, 5.0f));
+  e.range = dice.maybe(dice.chance(2) ? 0.0f : dice.real(0.5f, 4.0f));
+  return e;
+}
+
+Edit nodeEdit(Dice& dice, const Scene& scene) {
+  SetNodeTransform e;
+  e.node = dice.below(uint32_t(scene.nodes.size()));
+  // Now and then so far that render space itself moves.
+  e.translation = dice.maybe(dice.place(dice.chance(12) ? 20000.0 : 1.0));
+  e.rotation = dice.maybe(glm::dquat(dice.real(0.1f, 1.0f), dice.real(-1, 1), dice.real(-1, 1), dice.real(-1, 1)));
+  e.scale = dice.maybe(glm::dvec3(dice.real(0.3f, 1.5f), dice.real(0.3f, 1.5f), dice.chance(4) ? -1.0 : 1.0));
+  return e;
+}
+
+Edit viewEdit(Dice& dice, const Scene& scene) {
+  SetView e{scene.view};
+  e.view.eye = glm::dvec3(0.0, 0.3, 2.6) + dice.place(0.8);
+  e.view.lens.yfov = dice.real(0.4f, 1.0f);
+  e.view.lens.perspective = !dice.chance(6);
+  return e;
+}
+
+Edit techniqueEdit(Dice& dice) {
+  SetTechnique e;
+  if (dice.chance(2)) e.parameters.push_back({"maxBounces", dice.below(6)});
+  if (dice.chance(2)) e.parameters.push_back({"rouletteStart", 1 + dice.below(4)});
+  if (dice.chance(2)) e.parameters.push_back({"adaptive", dice.below(2)});
+  if (dice.chance(2)) e.parameters.push_back({"minSamples", 4 + dice.below(5)});
+  if (dice.chance(2)) e.parameters.push_back({"noiseThreshold", dice.real(0.05f, 0.5f)});
+  return e;
+}
+
+Edit anyEdit(Dice& dice, const Scene& scene) {
+  switch (dice.below(12)) {
+    case 0: case 1: case 2: return materialEdit(dice, scene);
+    case 3: case 4: return lightEdit(dice, scene);
+    case 5: case 6: return nodeEdit(dice, scene);
+    case 7: return SetEnvironment{dice.maybe(dice.chance(3) ? glm::vec3(0.0f) : dice.color()), dice.maybe(dice.real(-4, 4))};
+    case 8: return viewEdit(dice, scene);
+    case 9: return SetResolve{dice.real(-3, 3), ToneMap(dice.below(4))};
+    case 10: return SetImageSize{16 + 4 * dice.below(9), 16 + 4 * dice.below(9)};
+    default: return techniqueEdit(dice);
+  }
+}
+
+/// Brings picture size and parameters to those of `model`, then loads `scene` anew.
+void loadInto(TestSession& session, const Scene& scene, const SceneSummary& model) {
+  std::vector<Edit> settings{Edit(SetImageSize{model.width, model.height})};
+  settings.emplace_back(std::in_place_type<SetTechnique>, std::nullopt, model.parameters);
+  (void)session.edit(std::move(settings));
+  LoadRequest load;
+  load.loaded = std::make_shared<LoadedScene>(LoadedScene{scene, {}});
+  (void)session.ask(std::move(load));
+  session.run(0);
+}
+
+std::shared_ptr<const SceneSummary> describe(TestSession& session) {
+  (void)session.ask(DescribeRequest{});
+  session.run(0);
+  const auto replies = session.take<DescribeReply>();
+  return replies.empty() ? nullptr : replies.back().scene;
+}
+
+SessionConfig smallQuanta() {
+  SessionConfig config = smallPicture(32, 24);
+  config.quantumSeconds = 0.0005;  // several to a pass
+  config.firstFrameSeconds = 0.001;
+  return config;
+}
+
+/// One loaded session for each pipeline variant, so that every reference is rendered by the variant cut to its scene.
+class References {
+ public:
+  uint64_t hash(const Scene& scene, const SceneSummary& model, uint32_t passes) {
+    auto& session = m_sessions[gpu::needsConstants(sceneNeeds(scene))];
+    if (!session) session = std::make_unique<TestSession>(scene, smallQuanta());
+    loadInto(*session, scene, model);
+    session->run(passes);
+    return session->hash();
+  }
+
+ private:
+  std::map<std::vector<uint32_t>, std::unique_ptr<TestSession>> m_sessions;
+};
+
+/// Random batches with partial steps between them.
+void playSequence(TestSession& session, Dice& dice) {
+  const uint32_t batches = 1 + dice.below(6);
+  for (uint32_t i = 0; i < batches; ++i) {
+    std::vector<Edit> edits;
+    const uint32_t count = 1 + dice.below(3);
+    while (edits.size() < count) edits.push_back(anyEdit(dice, session.scene()));
+    (void)session.edit(std::move(edits));
+    session.steps(int(dice.below(5)));
+  }
+}
+
+TEST(AnyEdits, GiveThePictureOfAFreshLoad) {
+  const Scene starts[] = {richScene().scene, plainScene()};
+  TestSession edited[] = {{starts[0], smallQuanta()}, {starts[1], smallQuanta()}};
+  const auto defaults = describe(edited[0]);
+  References references;
+  for (uint32_t seed = 0; seed < kSequences; ++seed) {
+    Dice dice(seed);
+    TestSession& session = edited[seed % 2];
+    loadInto(session, starts[seed % 2], *defaults);
+    session.steps(int(dice.below(4)));
+    playSequence(session, dice);
+    const uint32_t passes = 1 + dice.below(6);
+    session.run(0);
+    session.published.clear();
+    session.run(passes);
+    for (const ErrorReply& error : session.take<ErrorReply>()) ADD_FAILURE() << "seed " << seed << ": " << error.error.text();
+    const uint64_t hash = session.hash();
+    const auto summary = describe(session);
+    EXPECT_EQ(hash, references.hash(session.scene(), *summary, passes)) << "seed " << seed << ", " << passes << " passes";
+    if (seed % 20 < 2) {
+      SessionConfig config = smallQuanta();
+      config.width = summary->width;
+      config.height = summary->height;
+      config.parameters = summary->parameters;
+      EXPECT_EQ(hash, freshHash(session.scene(), config, passes)) << "seed " << seed << ", a new session";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limn::test
