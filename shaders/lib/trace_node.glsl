@@ -90,18 +90,23 @@ struct TraceStack {
 
 TraceStack traceEmptyStack() { return TraceStack(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u); }
 
-// Pushes `entry` unless it is 0; else, when `pop`, drops the newest.
+// Pushes `entry` unless it is 0; else, when `pop`, drops the newest. One pass for each: written as one, every variable would
+// be read after its neighbours were overwritten, and compilers would copy them all.
 void traceMove(inout TraceStack s, uint entry, bool pop) {
   bool push = entry != 0u;
-#define LIMN_TRACE_MOVE(deeper, self, shallower) (push ? shallower : (pop ? deeper : self))
-  s = TraceStack(LIMN_TRACE_MOVE(s.s1, s.s0, entry), LIMN_TRACE_MOVE(s.s2, s.s1, s.s0), LIMN_TRACE_MOVE(s.s3, s.s2, s.s1),
-                 LIMN_TRACE_MOVE(s.s4, s.s3, s.s2), LIMN_TRACE_MOVE(s.s5, s.s4, s.s3), LIMN_TRACE_MOVE(s.s6, s.s5, s.s4),
-                 LIMN_TRACE_MOVE(s.s7, s.s6, s.s5), LIMN_TRACE_MOVE(s.s8, s.s7, s.s6), LIMN_TRACE_MOVE(s.s9, s.s8, s.s7),
-                 LIMN_TRACE_MOVE(s.s10, s.s9, s.s8), LIMN_TRACE_MOVE(s.s11, s.s10, s.s9),
-                 LIMN_TRACE_MOVE(s.s12, s.s11, s.s10), LIMN_TRACE_MOVE(s.s13, s.s12, s.s11),
-                 LIMN_TRACE_MOVE(s.s14, s.s13, s.s12), LIMN_TRACE_MOVE(s.s15, s.s14, s.s13),
-                 LIMN_TRACE_MOVE(0u, s.s15, s.s14));
-#undef LIMN_TRACE_MOVE
+#define LIMN_TRACE_PUSH(self, newer) s.self = push ? newer : s.self;
+  LIMN_TRACE_PUSH(s15, s.s14) LIMN_TRACE_PUSH(s14, s.s13) LIMN_TRACE_PUSH(s13, s.s12) LIMN_TRACE_PUSH(s12, s.s11)
+  LIMN_TRACE_PUSH(s11, s.s10) LIMN_TRACE_PUSH(s10, s.s9) LIMN_TRACE_PUSH(s9, s.s8) LIMN_TRACE_PUSH(s8, s.s7)
+  LIMN_TRACE_PUSH(s7, s.s6) LIMN_TRACE_PUSH(s6, s.s5) LIMN_TRACE_PUSH(s5, s.s4) LIMN_TRACE_PUSH(s4, s.s3)
+  LIMN_TRACE_PUSH(s3, s.s2) LIMN_TRACE_PUSH(s2, s.s1) LIMN_TRACE_PUSH(s1, s.s0) LIMN_TRACE_PUSH(s0, entry)
+#undef LIMN_TRACE_PUSH
+  pop = pop && !push;
+#define LIMN_TRACE_POP(self, older) s.self = pop ? older : s.self;
+  LIMN_TRACE_POP(s0, s.s1) LIMN_TRACE_POP(s1, s.s2) LIMN_TRACE_POP(s2, s.s3) LIMN_TRACE_POP(s3, s.s4)
+  LIMN_TRACE_POP(s4, s.s5) LIMN_TRACE_POP(s5, s.s6) LIMN_TRACE_POP(s6, s.s7) LIMN_TRACE_POP(s7, s.s8)
+  LIMN_TRACE_POP(s8, s.s9) LIMN_TRACE_POP(s9, s.s10) LIMN_TRACE_POP(s10, s.s11) LIMN_TRACE_POP(s11, s.s12)
+  LIMN_TRACE_POP(s12, s.s13) LIMN_TRACE_POP(s13, s.s14) LIMN_TRACE_POP(s14, s.s15) LIMN_TRACE_POP(s15, 0u)
+#undef LIMN_TRACE_POP
 }
 
 #endif

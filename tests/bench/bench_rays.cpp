@@ -107,14 +107,15 @@ class EmbreeScene {
 class DeviceRays {
  public:
   DeviceRays(vk::Device& device, const std::vector<Ray>& rays) : m_device(device), m_count(uint32_t(rays.size())) {
-    vk::BufferDesc desc{rays.size() * sizeof(Ray), vk::BufferUsage::storage, vk::MemoryKind::deviceLocal, "rays", "bench"};
+    vk::BufferDesc desc{rays.size() * sizeof(Ray), vk::BufferUsage::texel, vk::MemoryKind::deviceLocal, "rays", "bench",
+                        VK_FORMAT_R32G32B32A32_SFLOAT};
     m_rays = orExit(vk::createBufferWith(device, desc, std::span(rays)));
-    desc.size = rays.size() * sizeof(RayHit);
+    desc = {rays.size() * sizeof(RayHit), vk::BufferUsage::storage, vk::MemoryKind::deviceLocal, "hits", "bench"};
     m_hits = orExit(vk::Buffer::create(device, desc));
   }
   void trace(const SceneBvh& bvh, bool any) {
     const std::vector<vk::Binding> bindings{vk::texel(0, bvh.nodes()), vk::texel(1, bvh.triangles()),
-                                            vk::storage(2, m_rays), vk::storage(3, m_hits)};
+                                            vk::texel(2, m_rays), vk::storage(3, m_hits)};
     if (!m_pass) m_pass = orExit(gpu::Pass::create(m_device, any ? "trace_any" : "trace_closest", bindings, 4));
     orExit(gpu::runNow(m_device, [&](vk::CommandRecorder& recorder) {
       m_pass.record(recorder, bindings, m_count, (m_count + 63) / 64);

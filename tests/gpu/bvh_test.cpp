@@ -31,11 +31,12 @@ class BvhTest : public testing::Test {
 
   /// `shader`: one of trace_closest, trace_any and their _alpha variants.
   static std::vector<RayHit> trace(const SceneBvh& bvh, const std::vector<Ray>& rays, const std::string& shader) {
-    vk::BufferDesc desc{rays.size() * sizeof(Ray), vk::BufferUsage::storage, vk::MemoryKind::upload, "rays", "test"};
+    vk::BufferDesc desc{rays.size() * sizeof(Ray), vk::BufferUsage::texel, vk::MemoryKind::upload, "rays", "test",
+                        VK_FORMAT_R32G32B32A32_SFLOAT};
     vk::Buffer in = must(vk::createBufferWith(device(), desc, std::span(rays)));
     desc = {rays.size() * sizeof(RayHit), vk::BufferUsage::storage, vk::MemoryKind::readback, "hits", "test"};
     vk::Buffer out = must(vk::Buffer::create(device(), desc));
-    const std::vector<vk::Binding> bindings{vk::texel(0, bvh.nodes()), vk::texel(1, bvh.triangles()), vk::storage(2, in),
+    const std::vector<vk::Binding> bindings{vk::texel(0, bvh.nodes()), vk::texel(1, bvh.triangles()), vk::texel(2, in),
                                             vk::storage(3, out)};
     gpu::Pass& pass = s_passes[shader];
     if (!pass) pass = must(gpu::Pass::create(device(), shader, bindings, 4));
