@@ -11,7 +11,8 @@ constexpr uint64_t kMaxCustomIndex = 0xffffff;
 
 template <class T>
 Result<vk::Buffer> inputBuffer(vk::Device& device, std::span<const T> values, const char* name) {
-  vk::BufferDesc desc{values.size_bytes(), vk::BufferUsage::accelerationInput, vk::MemoryKind::deviceLocal, name, "visibility"};
+  vk::BufferDesc desc{values.size_bytes(), vk::BufferUsage::accelerationInput, vk::MemoryKind::deviceLocal, name,
+                      "visibility"};
   return vk::createBufferWith(device, desc, values);
 }
 
@@ -37,7 +38,8 @@ Result<SceneAcceleration::Block> SceneAcceleration::buildBlock(vk::Device& devic
   geometry.indices = &*indices;
   geometry.triangleCount = uint32_t(source.corners.size() / 3);
   geometry.opaque = !source.alphaTested;
-  auto tree = vk::AccelerationStructure::fromTriangles(device, std::span(&geometry, 1), "acceleration.block", "visibility");
+  auto tree =
+      vk::AccelerationStructure::fromTriangles(device, std::span(&geometry, 1), "acceleration.block", "visibility");
   if (!tree) return tree.error();
   block.tree = tree.take();
   return block;

@@ -9,9 +9,9 @@
 
 namespace limn {
 
-/// The scene's triangles in the device's own acceleration structures, for shaders/lib/trace_ray_query.glsl: what SceneBvh is to
-/// trace_walk.glsl. Only for devices with hasRayQuery(). It has been compiled but never run: no test machine had such a
-/// device. Render thread.
+/// The scene's triangles in the device's own acceleration structures, for shaders/lib/trace_ray_query.glsl: what
+/// SceneBvh is to trace_walk.glsl. Only for devices with hasRayQuery(). It has been compiled but never run: no test
+/// machine had such a device. Render thread.
 class SceneAcceleration {
  public:
   /// As SceneBvh::update. Errors: "limit" (a triangle id over 24 bits), and those of vk::AccelerationStructure.

@@ -16,8 +16,8 @@ using namespace shared;
 // Of the binary tree: smaller than what leaves can hold, so that BvhCollapse has a choice.
 constexpr uint32_t kSmallLeaf = 2;
 
-// Triangles without an area have no normal and cannot be hit. Differences and products of floats are exact enough in double
-// for this to find all that lie on a line.
+// Triangles without an area have no normal and cannot be hit. Differences and products of floats are exact enough in
+// double for this to find all that lie on a line.
 bool isDegenerate(const glm::vec3* c) {
   const glm::dvec3 normal = glm::cross(glm::dvec3(c[1]) - glm::dvec3(c[0]), glm::dvec3(c[2]) - glm::dvec3(c[0]));
   return normal == glm::dvec3(0.0);

@@ -13,7 +13,7 @@ namespace limn {
 
 /// The triangles of one object: a node's primitive. What moves as one should be one block.
 struct TriangleBlock {
-  std::span<const glm::vec3> corners;  ///< render space [m], finite, 3 a triangle; degenerate triangles are allowed and never hit
+  std::span<const glm::vec3> corners;  ///< render space [m], finite, 3 a triangle; degenerate triangles are never hit
   uint32_t firstTriangle = 0;          ///< global id of its first triangle (< 2^31); ids are what hits report
   bool alphaTested = false;            ///< hits ask the shader's alphaAccepts()
 };
@@ -27,13 +27,14 @@ struct BvhStats {
   double buildMs = 0;          ///< time of the last update, upload included [ms]
 };
 
-/// Every triangle of the scene in one bounding-volume hierarchy on the device, read by shaders/lib/trace.glsl. Two levels: a
-/// tree of each block, and a top tree over the blocks. The device's bytes depend on the blocks of the last update only, never
-/// on what came before. Render thread.
+/// Every triangle of the scene in one bounding-volume hierarchy on the device, read by shaders/lib/trace.glsl. Two
+/// levels: a tree of each block, and a top tree over the blocks. The device's bytes depend on the blocks of the last
+/// update only, never on what came before. Render thread.
 class SceneBvh {
  public:
-  /// Makes the device's tables those of `blocks`. Only the blocks named in `changed` are read and rebuilt, with the top; all
-  /// of them the first time and when their number differs. The buffers may be new ones afterwards. Waits for the device.
+  /// Makes the device's tables those of `blocks`. Only the blocks named in `changed` are read and rebuilt, with the
+  /// top; all of them the first time and when their number differs. The buffers may be new ones afterwards. Waits for
+  /// the device.
   /// Errors: "limit" (more triangles than the device's texel buffers hold), "out-of-memory", "device-lost".
   Result<void> update(vk::Device& device, std::span<const TriangleBlock> blocks, std::span<const uint32_t> changed);
 

@@ -10,8 +10,8 @@
 namespace limn {
 namespace {
 
-// What Embree's callbacks make, in Embree's own allocator: an inner node with two children, or a leaf (count > 0) with the
-// indices of its boxes right behind it. The callbacks share nothing, so Embree may call them from any thread.
+// What Embree's callbacks make, in Embree's own allocator: an inner node with two children, or a leaf (count > 0) with
+// the indices of its boxes right behind it. The callbacks share nothing, so Embree may call them from any thread.
 struct RawNode {
   RawNode* children[2];
   Box childBoxes[2];

@@ -27,7 +27,8 @@ struct Box {
   }
 };
 
-/// A binary tree over boxes. Children follow their parent; nodes[0] is the root; no nodes when there was nothing to build over.
+/// A binary tree over boxes. Children follow their parent; nodes[0] is the root; no nodes when there was nothing to
+/// build over.
 struct BvhTree {
   struct Node {
     Box box;

@@ -24,7 +24,8 @@ BvhCollapse::BvhCollapse(const BvhTree& tree, uint32_t maxLeafSize, TraversalCos
     plan.firstItem = left.firstItem;
     plan.itemCount = left.itemCount + right.itemCount;
 
-    // The cheapest way to be k subtrees, i of them in the left child; k = 4 is what a node of its own would have as children.
+    // The cheapest way to be k subtrees, i of them in the left child; k = 4 is what a node of its own would have as
+    // children.
     std::array<float, kWidth> forest{};
     for (uint32_t k = 2; k <= kWidth; ++k) {
       forest[k - 1] = INFINITY;

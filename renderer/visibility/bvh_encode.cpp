@@ -12,8 +12,8 @@ using namespace shared;
 
 // In steps of the grid. The shader computes a plane's t as (256 + q) * A + B with A = scale / d and
 // B = (origin - o) / d - 256 * A. For a ray origin o within D = 1000 steps of the node this errs by less than
-// 4 * 2^-24 * (D + 512) = 4e-4 steps, fifty times less than this margin. From farther away the error is relative to t and
-// covered by the slack of kTraceSlack ulps in trace_node.glsl.
+// 4 * 2^-24 * (D + 512) = 4e-4 steps, fifty times less than this margin. From farther away the error is relative to t
+// and covered by the slack of kTraceSlack ulps in trace_node.glsl.
 constexpr double kMargin = 0.02;
 
 // The grid of one axis: a power of two at least 1/252 of the extent, and so coarse that origin can lie below the box.

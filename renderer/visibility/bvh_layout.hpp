@@ -22,8 +22,8 @@ struct BvhTables {
   std::vector<glm::vec4> triangles;
 };
 
-/// Puts the blocks' trees under the top tree: the root, the top's nodes, then block after block. `blockOfItem` names the block of
-/// each item of `top`. Errors: "limit" (more nodes or triangles than bases can count).
+/// Puts the blocks' trees under the top tree: the root, the top's nodes, then block after block. `blockOfItem` names
+/// the block of each item of `top`. Errors: "limit" (more nodes or triangles than bases can count).
 Result<BvhTables> layOut(const WideBvh& top, std::span<const uint32_t> blockOfItem, std::span<const BvhBlock> blocks);
 
 }  // namespace limn

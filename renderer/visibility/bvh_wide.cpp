@@ -116,8 +116,9 @@ class Widener {
     return parts;
   }
 
-  // At most four parts, each no heavier than the least room that four times holds them all. Weights are powers of four and the
-  // heavy go first, so what is left of a part is always a multiple of the next weight, and parts fill without a gap.
+  // At most four parts, each no heavier than the least room that four times holds them all. Weights are powers of four
+  // and the heavy go first, so what is left of a part is always a multiple of the next weight, and parts fill without
+  // a gap.
   std::vector<Part> openByWeight(const Part& part) {
     sortItems(part);
     uint64_t most = 1;
@@ -126,7 +127,8 @@ class Widener {
     for (uint32_t i = part.first; i < part.first + part.count;) {
       const uint32_t first = i;
       uint64_t sum = 0;
-      while (i < part.first + part.count && sum + room(m_heights[m_items[i]]) <= most) sum += room(m_heights[m_items[i++]]);
+      while (i < part.first + part.count && sum + room(m_heights[m_items[i]]) <= most)
+        sum += room(m_heights[m_items[i++]]);
       parts.push_back(range(first, i - first));
     }
     LIMN_CHECK_LE(parts.size(), size_t(kWidth));
@@ -151,7 +153,9 @@ class Widener {
     for (const Part& child : children) {
       const bool inner = encoded.size() < innerCount;
       encoded.push_back({child.box, inner ? 0 : child.count});
-      if (!inner) m_wide.items.insert(m_wide.items.end(), m_items.begin() + child.first, m_items.begin() + child.first + child.count);
+      if (!inner)
+        m_wide.items.insert(m_wide.items.end(), m_items.begin() + child.first,
+                            m_items.begin() + child.first + child.count);
     }
     const uint32_t childBase = uint32_t(m_wide.nodes.size());
     m_wide.nodes.resize(childBase + innerCount);

@@ -15,8 +15,8 @@ layout(binding = 0) uniform BVH_NODE_SAMPLER bvhNodes;
 layout(binding = 1) uniform BVH_TRIANGLE_SAMPLER bvhTriangles;
 #endif
 
-// Two texels a ray: origin and tMax; direction and the bits of the alpha state. Texels, because lavapipe reads them three times as
-// fast as a storage buffer.
+// Two texels a ray: origin and tMax; direction and the bits of the alpha state. Texels, because lavapipe reads them
+// three times as fast as a storage buffer.
 layout(binding = 2) uniform samplerBuffer rays;
 
 struct RayHit {

@@ -2,9 +2,11 @@
 // `BVH_NODE_SAMPLER bvhNodes` and `BVH_TRIANGLE_SAMPLER bvhTriangles` before this. With LIMN_ALPHA it also defines
 //   bool alphaAccepts(uint triangle, vec2 barycentrics, inout uint state)
 // which says whether a hit on an alpha-tested triangle counts; and, if that is only known when the pipeline is made,
-// LIMN_ALPHA_ENABLED as a constant expression that says whether there are any. LIMN_RAY_QUERY: see trace_ray_query.glsl.
+// LIMN_ALPHA_ENABLED as a constant expression that says whether there are any. LIMN_RAY_QUERY: see
+// trace_ray_query.glsl.
 //
-// lavapipe ends all loops of an invocation after 65,535 iterations together, silently; a ray takes about 50, seldom 300.
+// lavapipe ends all loops of an invocation after 65,535 iterations together, silently; a ray takes about 50, seldom
+// 300.
 #ifndef LIMN_TRACE_GLSL
 #define LIMN_TRACE_GLSL
 #include "shaders/shared/bvh_shared.h"

@@ -3,9 +3,9 @@
 #define LIMN_TRACE_NODE_GLSL
 #include "shaders/shared/bvh_shared.h"
 
-// Ray parameters are compared as the integers of their bits, which order floats >= 0 as the floats; a negative one stays
-// below all of them, and that is all an interval that starts at 0 needs to know. It is a third of the work on lavapipe, whose
-// float min and max also look for NaN.
+// Ray parameters are compared as the integers of their bits, which order floats >= 0 as the floats; a negative one
+// stays below all of them, and that is all an interval that starts at 0 needs to know. It is a third of the work on
+// lavapipe, whose float min and max also look for NaN.
 const int kTraceMiss = 0x7fffffff;
 const int kTraceSlack = 8;  // [ulp] of t, for the rounding of planes far away (renderer/visibility/bvh_encode.cpp)
 
@@ -27,7 +27,8 @@ vec3 traceInverse(vec3 dirR) {
   return 1.0 / d;
 }
 
-// t of planes whose grid coordinates (0..255) are in bits 15..22 of q: a float of 256 + coordinate is made without conversion.
+// t of planes whose grid coordinates (0..255) are in bits 15..22 of q: a float of 256 + coordinate is made without
+// conversion.
 vec3 traceT(uvec3 q, vec3 perStep, vec3 offset) {
   return uintBitsToFloat((q & 0x7f8000u) | 0x43800000u) * perStep + offset;
 }
@@ -82,16 +83,16 @@ TraceStep traceStep(uint entry, vec3 originR, vec3 inverse, float tFar) {
   return s;
 }
 
-// The entries left behind on the way down, newest in s0: kBvhMaxHeight - 1 are enough. Sixteen variables, because an indexed
-// array would live in memory.
+// The entries left behind on the way down, newest in s0: kBvhMaxHeight - 1 are enough. Sixteen variables, because an
+// indexed array would live in memory.
 struct TraceStack {
   uint s0, s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12, s13, s14, s15;
 };
 
 TraceStack traceEmptyStack() { return TraceStack(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u); }
 
-// Pushes `entry` unless it is 0; else, when `pop`, drops the newest. One pass for each: written as one, every variable would
-// be read after its neighbours were overwritten, and compilers would copy them all.
+// Pushes `entry` unless it is 0; else, when `pop`, drops the newest. One pass for each: written as one, every variable
+// would be read after its neighbours were overwritten, and compilers would copy them all.
 void traceMove(inout TraceStack s, uint entry, bool pop) {
   bool push = entry != 0u;
 #define LIMN_TRACE_PUSH(self, newer) s.self = push ? newer : s.self;

@@ -29,7 +29,8 @@ vec3 toTraceFrame(TraceFrame f, vec3 posR) {
 }
 
 // The hit's (weight of corner 1, weight of corner 2, t). False on a miss; edges count as inside, triangles seen from
-// their edge are missed. The edge functions keep both products rounded apart: swapping two corners must only flip the sign.
+// their edge are missed. The edge functions keep both products rounded apart: swapping two corners must only flip the
+// sign.
 bool hitTriangle(TraceFrame f, vec3 cornerA, vec3 cornerB, vec3 cornerC, out vec3 hit) {
   vec3 a = toTraceFrame(f, cornerA);
   vec3 b = toTraceFrame(f, cornerB);

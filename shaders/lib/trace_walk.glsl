@@ -51,8 +51,8 @@ void traceTriangles(TraceFrame frame, TraceStep s, const bool any, inout uint al
 #endif
 }
 
-// On a vector machine a branch costs its whole body whether taken or not, and only a loop that all lanes have left is skipped:
-// so the lanes walk nodes together until each has triangles to test, then test together.
+// On a vector machine a branch costs its whole body whether taken or not, and only a loop that all lanes have left is
+// skipped: so the lanes walk nodes together until each has triangles to test, then test together.
 bool traceScene(vec3 originR, vec3 dirR, float tMax, const bool any, inout uint alphaState, out Hit hit) {
   hit = Hit(tMax, kNoTriangle, vec2(0.0));
   TraceFrame frame = makeTraceFrame(originR, dirR);

@@ -1,5 +1,5 @@
-// Million rays a second of Limn on its device beside Embree's rtcIntersect1 and rtcOccluded1 on two threads: the same scene, the
-// same rays from the same buffers, repetitions in turn, the best of each.
+// Million rays a second of Limn on its device beside Embree's rtcIntersect1 and rtcOccluded1 on two threads: the same
+// scene, the same rays from the same buffers, repetitions in turn, the best of each.
 //   bench_rays [--device NAME|INDEX] [--repetitions N]    N at least, and two seconds a row at least
 #include <embree3/rtcore.h>
 
@@ -47,7 +47,8 @@ double timed(const std::function<void()>& work) {
 
 class EmbreeScene {
  public:
-  explicit EmbreeScene(const std::vector<glm::vec3>& corners) : m_device(rtcNewDevice("threads=2")), m_scene(rtcNewScene(m_device)) {
+  explicit EmbreeScene(const std::vector<glm::vec3>& corners)
+      : m_device(rtcNewDevice("threads=2")), m_scene(rtcNewScene(m_device)) {
     RTCGeometry mesh = rtcNewGeometry(m_device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(
         rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), corners.size()));
@@ -189,8 +190,8 @@ int run(int argc, char** argv) {
     }
   }
   const auto device = orExit(vk::Device::open(options));
-  std::printf("%s against Embree on %d threads, million rays a second, best of %d or more\n", device->info().name.c_str(),
-              kEmbreeThreads, repetitions);
+  std::printf("%s against Embree on %d threads, million rays a second, best of %d or more\n",
+              device->info().name.c_str(), kEmbreeThreads, repetitions);
   std::printf("%9s  %6s  %8s  %8s  %6s  %11s\n", "triangles", "rays", "Limn", "Embree", "ratio", "disagree");
   const double small = benchScene(*device, 5'000, repetitions);
   const double medium = benchScene(*device, 100'000, repetitions);

@@ -15,7 +15,8 @@ void addQuad(std::vector<glm::vec3>& corners, glm::vec3 a, glm::vec3 b, glm::vec
 
 void addBumpySphere(std::vector<glm::vec3>& corners, glm::vec3 center, float radius, int latitudes) {
   auto at = [&](int i, int j) {
-    const float theta = glm::pi<float>() * float(i) / float(latitudes), phi = glm::pi<float>() * float(j) / float(latitudes);
+    const float theta = glm::pi<float>() * float(i) / float(latitudes),
+                phi = glm::pi<float>() * float(j) / float(latitudes);
     const float r = radius * (1 + 0.08f * std::sin(9 * theta) * std::sin(11 * phi));
     return center + r * glm::vec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
   };
@@ -78,7 +79,8 @@ std::vector<Ray> cameraRays(uint32_t size) {
   return rays;
 }
 
-std::vector<Ray> shadowRays(const std::vector<glm::vec3>& corners, const std::vector<Ray>& camera, const std::vector<RayHit>& hits) {
+std::vector<Ray> shadowRays(const std::vector<glm::vec3>& corners, const std::vector<Ray>& camera,
+                            const std::vector<RayHit>& hits) {
   std::vector<Ray> rays;
   forEachHit(corners, camera, hits, [&](const SurfacePoint& p) {
     const glm::vec3 toLight = glm::vec3(0.3f, 0.9f, 0.3f) - p.posR;
@@ -87,7 +89,8 @@ std::vector<Ray> shadowRays(const std::vector<glm::vec3>& corners, const std::ve
   return rays;
 }
 
-std::vector<Ray> bounceRays(const std::vector<glm::vec3>& corners, const std::vector<Ray>& camera, const std::vector<RayHit>& hits) {
+std::vector<Ray> bounceRays(const std::vector<glm::vec3>& corners, const std::vector<Ray>& camera,
+                            const std::vector<RayHit>& hits) {
   std::vector<Ray> rays;
   std::mt19937 random(1);
   auto unit = [&] { return float(random() >> 8) * 0x1p-24f; };
@@ -96,7 +99,8 @@ std::vector<Ray> bounceRays(const std::vector<glm::vec3>& corners, const std::ve
     const glm::vec3 other = std::abs(p.normal.x) > 0.5f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
     const glm::vec3 tangent = glm::normalize(glm::cross(p.normal, other)), bitangent = glm::cross(p.normal, tangent);
     const float cosTheta = std::sqrt(std::max(0.0f, 1 - sinTheta * sinTheta));
-    rays.push_back({p.posR, 1e30f, sinTheta * (std::cos(phi) * tangent + std::sin(phi) * bitangent) + cosTheta * p.normal, 0});
+    rays.push_back(
+        {p.posR, 1e30f, sinTheta * (std::cos(phi) * tangent + std::sin(phi) * bitangent) + cosTheta * p.normal, 0});
   });
   return rays;
 }

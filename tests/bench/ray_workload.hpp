@@ -27,15 +27,18 @@ constexpr const char* name(RayKind kind) {
 /// Shadow rays only ask whether anything is hit.
 constexpr bool asksAny(RayKind kind) { return kind == RayKind::shadow; }
 
-/// A box that is open to the camera, with three bumpy spheres of about `triangleCount` triangles in all: 3 corners a triangle.
+/// A box that is open to the camera, with three bumpy spheres of about `triangleCount` triangles in all: 3 corners a
+/// triangle.
 std::vector<glm::vec3> makeScene(uint32_t triangleCount);
 
-/// One ray through each pixel of a size × size image, in 8x8 tiles, tiles in Morton order inside squares of 32x32, the squares
-/// spread so that equal shares of the list are equal work (lavapipe gives each thread one contiguous share).
+/// One ray through each pixel of a size × size image, in 8x8 tiles, tiles in Morton order inside squares of 32x32, the
+/// squares spread so that equal shares of the list are equal work (lavapipe gives each thread one contiguous share).
 std::vector<Ray> cameraRays(uint32_t size);
 
 /// From where camera rays hit (misses leave none): to a point under the ceiling, and about the normal by the cosine.
-std::vector<Ray> shadowRays(const std::vector<glm::vec3>& corners, const std::vector<Ray>& camera, const std::vector<RayHit>& hits);
-std::vector<Ray> bounceRays(const std::vector<glm::vec3>& corners, const std::vector<Ray>& camera, const std::vector<RayHit>& hits);
+std::vector<Ray> shadowRays(const std::vector<glm::vec3>& corners, const std::vector<Ray>& camera,
+                            const std::vector<RayHit>& hits);
+std::vector<Ray> bounceRays(const std::vector<glm::vec3>& corners, const std::vector<Ray>& camera,
+                            const std::vector<RayHit>& hits);
 
 }  // namespace limn::bench

@@ -15,7 +15,7 @@ namespace limn::test {
 struct Crossing {
   glm::dvec3 corners[3];
   double tolerance = 0;  ///< [m]: what rounding in float may move a corner or the origin across the ray
-  double drift = 0;      ///< [m]: what rounding may move the interpolated point; much, when a needle leaves few digits for its area
+  double drift = 0;      ///< [m]: what rounding may move the interpolated point; much in a needle
   double slope = 0;      ///< how much z changes at most when the ray moves by 1 m across
   double inside = 0;     ///< [m] from the ray to the nearest edge, negative outside
   double t = 0;
@@ -51,7 +51,8 @@ inline Crossing cross(const Ray& ray, std::span<const glm::vec3> corners) {
   c.t = (u * a.z + v * b.z + w * d.z) / area;
   c.barycentrics = {v / area, w / area};
   const glm::dvec2 e1 = glm::dvec2(b) - glm::dvec2(a), e2 = glm::dvec2(d) - glm::dvec2(a);
-  const glm::dvec2 gradient = glm::dvec2(e2.y * (b.z - a.z) - e1.y * (d.z - a.z), e1.x * (d.z - a.z) - e2.x * (b.z - a.z)) / area;
+  const glm::dvec2 gradient =
+      glm::dvec2(e2.y * (b.z - a.z) - e1.y * (d.z - a.z), e1.x * (d.z - a.z) - e2.x * (b.z - a.z)) / area;
   c.slope = glm::length(gradient);
   return c;
 }
@@ -60,7 +61,8 @@ using Accepts = std::function<std::optional<bool>(uint32_t triangle, glm::dvec2 
 
 /// What is wrong with `hit` as the closest hit of `ray`, beyond what rounding in float explains; empty when nothing is.
 /// `accepts` may leave a hit open (nullopt), which then is neither demanded nor refused.
-inline std::string judge(const Ray& ray, const RayHit& hit, std::span<const glm::vec3> corners, const Accepts& accepts = {}) {
+inline std::string judge(const Ray& ray, const RayHit& hit, std::span<const glm::vec3> corners,
+                         const Accepts& accepts = {}) {
   const double length = glm::length(glm::dvec3(ray.dirR));
   const uint32_t count = uint32_t(corners.size() / 3);
   const double found = hit.triangle == shared::kNoTriangle ? double(ray.tMax) : double(hit.t);
@@ -75,7 +77,8 @@ inline std::string judge(const Ray& ray, const RayHit& hit, std::span<const glm:
     const Crossing crossing = cross(ray, c);
     const double allowed = crossing.drift * (1 + length * crossing.slope);
     if (glm::length(onTriangle - onRay) > allowed) {
-      return "the ray's point is " + std::to_string(glm::length(onTriangle - onRay) / allowed) + " tolerances off the triangle's";
+      return "the ray's point is " + std::to_string(glm::length(onTriangle - onRay) / allowed) +
+             " tolerances off the triangle's";
     }
     if (accepts && accepts(hit.triangle, w) == false) return "a hit that alphaAccepts refuses";
   }
@@ -85,7 +88,8 @@ inline std::string judge(const Ray& ray, const RayHit& hit, std::span<const glm:
     const double tTolerance = c.drift * (c.slope + 1 / length);
     if (c.t <= tTolerance || c.t >= found - tTolerance - 1e-6 * found) continue;
     if (accepts && accepts(i, c.barycentrics) != true) continue;
-    return "triangle " + std::to_string(i) + " at t " + std::to_string(c.t) + " was overlooked for t " + std::to_string(found);
+    return "triangle " + std::to_string(i) + " at t " + std::to_string(c.t) + " was overlooked for t " +
+           std::to_string(found);
   }
   return {};
 }

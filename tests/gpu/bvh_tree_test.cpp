@@ -31,7 +31,8 @@ void visit(const WideBvh& wide, const std::vector<uint32_t>& heights, uint32_t i
   for (uint32_t bit = 0; bit < 12; ++bit) {
     if (mask >> bit & 1) ++walk.itemUses[wide.items[item++]];
   }
-  for (uint32_t i = 0; i < node.scaleExponents >> 24; ++i) visit(wide, heights, (node.childBase & kBvhBaseMask) + i, level + 1, walk);
+  for (uint32_t i = 0; i < node.scaleExponents >> 24; ++i)
+    visit(wide, heights, (node.childBase & kBvhBaseMask) + i, level + 1, walk);
 }
 
 // Boxes of very different sizes around one point: the surface-area heuristic peels them off one by one.
@@ -87,7 +88,8 @@ TEST_P(BvhTreeTest, TopsAreLowWhateverIsBelow) {
   EXPECT_LE(walk.longestPath, kBvhMaxHeight);
 }
 
-INSTANTIATE_TEST_SUITE_P(Counts, BvhTreeTest, testing::Values(1u, 2u, 3u, 4u, 5u, 7u, 13u, 50u, 49u, 193u, 500u, 2000u));
+INSTANTIATE_TEST_SUITE_P(Counts, BvhTreeTest,
+                         testing::Values(1u, 2u, 3u, 4u, 5u, 7u, 13u, 50u, 49u, 193u, 500u, 2000u));
 
 }  // namespace
 }  // namespace limn::test
