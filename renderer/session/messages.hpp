@@ -119,6 +119,7 @@ struct Status {
   double secondsSinceRestart = 0.0;
   uint64_t discardedSamples = 0;
   uint64_t editsApplied = 0, restarts = 0, framesPublished = 0, quanta = 0;
+  uint64_t blocksRebuilt = 0;          ///< BVH blocks that edits and loads had built anew
   uint32_t pipelinesCreated = 0;       ///< since the process began; constant after warm-up
   std::string technique, device;
   std::vector<std::string> ran, leftOut;              ///< SceneNeeds at work

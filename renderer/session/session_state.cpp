@@ -111,7 +111,9 @@ Result<void> Session::Impl::updateBvh(const gpu::SyncReport& synced) {
   std::sort(changed.begin(), changed.end());
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
   if (changed.empty() && !synced.reloaded) return {};
-  return bvh.update(device, blocks, changed);
+  if (auto done = bvh.update(device, blocks, changed); !done) return done;
+  status.blocksRebuilt += bvh.stats().blocksRebuilt;
+  return {};
 }
 
 Result<void> Session::Impl::writeCamera() {
