@@ -35,8 +35,8 @@ struct Verdict {
 
 /// A WebSocket upgrade: path, Upgrade, version, subprotocol, Host, Origin, token; all before any state is made.
 Verdict judgeUpgrade(const AccessPolicy& policy, const RequestHeaders& headers);
-/// Host against DNS rebinding: a loopback listener answers to loopback names alone; any other also to IP literals, which
-/// cannot be rebound, to the address it listens on and to the hosts of the allowed origins.
+/// Host against DNS rebinding: a loopback listener answers to loopback names alone; any other also to IP literals,
+/// which cannot be rebound, to the address it listens on and to the hosts of the allowed origins.
 Verdict judgeHost(const AccessPolicy& policy, const RequestHeaders& headers);
 /// Token in `Authorization: Bearer`, in the cookie, or as subprotocol `bearer.<base64url>`. Compared in constant time.
 bool tokenMatches(const AccessPolicy& policy, const RequestHeaders& headers);

@@ -22,7 +22,9 @@ bool ClientSession::push(OutgoingMessage message) {
   return true;
 }
 
-bool ClientSession::queue(const protocol::ServerMessage& message) { return push({false, protocol::encode(message), nullptr}); }
+bool ClientSession::queue(const protocol::ServerMessage& message) {
+  return push({false, protocol::encode(message), nullptr});
+}
 
 bool ClientSession::queueFile(uint32_t seq, std::shared_ptr<const std::vector<uint8_t>> file) {
   protocol::FrameHeader header;

@@ -21,7 +21,7 @@ struct ErrorWait {
 /// What the daemon knows of one connection. Loop thread.
 class ClientSession {
  public:
-  static constexpr size_t kMaxQueuedBytes = 16u << 20;  ///< then a reader is too slow; one longer message alone may wait
+  static constexpr size_t kMaxQueuedBytes = 16u << 20;  ///< then a reader is too slow; one longer alone may wait
   static constexpr uint32_t kMaxUnanswered = 2048;      ///< requests on their way through the renderer
 
   ClientSession(ConnectionId id, double now) : m_id(id), m_openedAt(now) {}

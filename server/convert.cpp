@@ -181,8 +181,8 @@ std::vector<protocol::Technique> toWire(const std::vector<TechniqueInfo>& techni
     out.description = technique.description;
     out.biased = technique.biased;
     for (const ParameterInfo& p : technique.parameters)
-      out.parameters.push_back({p.name, p.description, p.unit, same<protocol::ParameterType>(p.type), p.minimum, p.maximum,
-                                p.defaultValue, same<protocol::CostClass>(p.cost)});
+      out.parameters.push_back({p.name, p.description, p.unit, same<protocol::ParameterType>(p.type), p.minimum,
+                                p.maximum, p.defaultValue, same<protocol::CostClass>(p.cost)});
   }
   return wire;
 }

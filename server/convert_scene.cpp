@@ -82,7 +82,8 @@ protocol::SceneNode toWire(const Node& node) {
 
 protocol::LoadReport toWire(const LoadReport& report) {
   protocol::LoadReport wire;
-  for (const LoadReport::Item& item : report.unsupported) wire.unsupported.push_back({item.feature, item.materials, item.note});
+  for (const LoadReport::Item& item : report.unsupported)
+    wire.unsupported.push_back({item.feature, item.materials, item.note});
   wire.notes = report.notes;
   wire.triangles = report.triangles;
   wire.degenerateTriangles = report.degenerateTriangles;

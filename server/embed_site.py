@@ -14,8 +14,8 @@ MIME = {
 PLACEHOLDER = b"""<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>Limn</title></head>
 <body><h1>limnd is running</h1>
-<p>This build holds no web client. Build it with <code>npm ci</code> and <code>npm run build</code> in <code>web/</code>,
-then build limnd again.</p></body></html>
+<p>This build holds no web client. Build it with <code>npm ci</code> and <code>npm run build</code> in
+<code>web/</code>, then build limnd again.</p></body></html>
 """
 
 
@@ -52,9 +52,11 @@ def write(files):
         etag = hashlib.sha256(data).hexdigest()[:16]
         immutable = "true" if path.startswith("/assets/") else "false"
         gzip_view = view(f"kPacked{index}", packed) if pays else "{}"
-        rows.append(f'  {{"{path}", "{mime}", "\\"{etag}\\"", {view(f"kFile{index}", data)}, {gzip_view}, {immutable}}},\n')
+        bytes_view = view(f"kFile{index}", data)
+        rows.append(f'  {{"{path}", "{mime}", "\\"{etag}\\"", {bytes_view}, {gzip_view}, {immutable}}},\n')
     out.append("const SiteFile kSite[] = {\n" + "".join(rows) + "};\n")
-    out.append("}  // namespace\n\nstd::span<const SiteFile> builtInSite() { return kSite; }\n\n}  // namespace limn::server\n")
+    out.append("}  // namespace\n\nstd::span<const SiteFile> builtInSite() { return kSite; }\n\n")
+    out.append("}  // namespace limn::server\n")
     return "".join(out)
 
 

@@ -19,8 +19,8 @@ class EncodeWorker {
   EncodeWorker(const EncodeWorker&) = delete;
   EncodeWorker& operator=(const EncodeWorker&) = delete;
 
-  /// Loop thread. Encodings of `frame` that somebody can take now; replaces whatever waited. One that is being made is not
-  /// begun again.
+  /// Loop thread. Encodings of `frame` that somebody can take now; replaces whatever waited. One that is being made is
+  /// not begun again.
   void want(std::shared_ptr<const Frame> frame, std::set<EncodingKey> keys);
   /// Loop thread. What was finished since the last call, in order.
   std::vector<std::shared_ptr<const EncodedFrame>> takeDone();

@@ -23,7 +23,8 @@ uint8_t movingQuality(double lagSeconds) {
 }  // namespace
 
 size_t FlowControl::bytesInFlight() const {
-  return std::accumulate(m_inFlight.begin(), m_inFlight.end(), size_t(0), [](size_t sum, const Sent& s) { return sum + s.bytes; });
+  return std::accumulate(m_inFlight.begin(), m_inFlight.end(), size_t(0),
+                         [](size_t sum, const Sent& s) { return sum + s.bytes; });
 }
 
 void FlowControl::sent(uint32_t frameId, size_t bytes, double now) {
@@ -32,7 +33,8 @@ void FlowControl::sent(uint32_t frameId, size_t bytes, double now) {
 }
 
 FlowControl::Ack FlowControl::acknowledged(uint32_t frameId, double now) {
-  const auto found = std::find_if(m_inFlight.begin(), m_inFlight.end(), [&](const Sent& s) { return s.frameId == frameId; });
+  const auto found =
+      std::find_if(m_inFlight.begin(), m_inFlight.end(), [&](const Sent& s) { return s.frameId == frameId; });
   if (found == m_inFlight.end()) return frameId > m_newestSent || m_newestSent == 0 ? Ack::neverSent : Ack::old;
   const double delay = now - found->at;
   m_inFlight.erase(found);

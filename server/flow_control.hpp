@@ -18,7 +18,8 @@ class FlowControl {
   size_t bytesInFlight() const;
 
   void sent(uint32_t frameId, size_t bytes, double now);
-  /// A frame is acknowledged after it was shown or dropped. Credits come back one a frame; `old` for one twice acknowledged.
+  /// A frame is acknowledged after it was shown or dropped. Credits come back one a frame; `old` for one twice
+  /// acknowledged.
   Ack acknowledged(uint32_t frameId, double now);
   /// [s] since the oldest frame in flight was sent; 0 when nothing is in flight.
   double oldestAge(double now) const;

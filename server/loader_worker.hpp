@@ -48,8 +48,8 @@ class LoaderWorker {
   std::thread m_thread;
 };
 
-/// The file that `uri` names under `root`: a regular file, reached without leaving the root by "..", by an absolute path or
-/// by a link. Errors: "io", place: the uri.
+/// The file that `uri` names under `root`: a regular file, reached without leaving the root by "..", by an absolute
+/// path or by a link. Errors: "io", place: the uri.
 Result<std::filesystem::path> resolveAsset(const std::filesystem::path& root, const std::string& uri);
 
 }  // namespace limn::server

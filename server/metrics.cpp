@@ -27,10 +27,19 @@ std::string escaped(std::string_view text) {
 }  // namespace
 
 void MetricsText::describe(std::string_view name, std::string_view help, std::string_view type) {
-  m_text.append("# HELP ").append(name).append(" ").append(help).append("\n# TYPE ").append(name).append(" ").append(type).append("\n");
+  m_text.append("# HELP ")
+      .append(name)
+      .append(" ")
+      .append(help)
+      .append("\n# TYPE ")
+      .append(name)
+      .append(" ")
+      .append(type)
+      .append("\n");
 }
 
-void MetricsText::add(std::string_view name, std::string_view help, std::string_view type, std::string_view labels, double value) {
+void MetricsText::add(std::string_view name, std::string_view help, std::string_view type, std::string_view labels,
+                      double value) {
   describe(name, help, type);
   m_text.append(name).append(labels).append(" ").append(number(value)).append("\n");
 }
@@ -38,7 +47,14 @@ void MetricsText::add(std::string_view name, std::string_view help, std::string_
 void MetricsText::beginGauges(std::string_view name, std::string_view help) { describe(name, help, "gauge"); }
 
 void MetricsText::sample(std::string_view name, std::string_view label, std::string_view labelValue, double value) {
-  m_text.append(name).append("{").append(label).append("=\"").append(escaped(labelValue)).append("\"} ").append(number(value)).append("\n");
+  m_text.append(name)
+      .append("{")
+      .append(label)
+      .append("=\"")
+      .append(escaped(labelValue))
+      .append("\"} ")
+      .append(number(value))
+      .append("\n");
 }
 
 }  // namespace limn::server

@@ -11,27 +11,36 @@ namespace {
 
 constexpr double kStatusSeconds = 0.25;
 
-/// The schema's code for one of ours; those of the scene loader say more than clients need to tell apart.
-std::string wireCode(const std::string& code) {
+/// The schema's code for one of the renderer's, which say more than clients need to tell apart.
+std::string_view wireCode(std::string_view code) {
   const auto& known = protocol::kErrorCodes;
   if (std::find(known.begin(), known.end(), code) != known.end()) return code;
-  if (code == "path") return std::string(protocol::kErrorIo);
-  return code.starts_with("bad-") ? std::string(protocol::kErrorBadFile) : std::string(protocol::kErrorInternal);
+  if (code == "path") return protocol::kErrorIo;
+  if (code == "size") return protocol::kErrorOutOfRange;
+  if (code == "out-of-memory") return protocol::kErrorLimit;
+  if (code.starts_with("unknown-")) return protocol::kErrorUnknownName;
+  return code.starts_with("bad-") ? protocol::kErrorBadFile : protocol::kErrorInternal;
 }
 
 }  // namespace
 
 Service::Service(ServiceConfig config, Mailbox& mailbox, FrameSlot& frames, StatusQueue& replies)
-    : m_config(std::move(config)), m_mailbox(mailbox), m_frames(frames), m_replies(replies), m_aloneSince(nowSeconds()) {}
+    : m_config(std::move(config)),
+      m_mailbox(mailbox),
+      m_frames(frames),
+      m_replies(replies),
+      m_aloneSince(nowSeconds()) {}
 
-Result<std::unique_ptr<Service>> Service::open(ServiceConfig config, Mailbox& mailbox, FrameSlot& frames, StatusQueue& replies) {
+Result<std::unique_ptr<Service>> Service::open(ServiceConfig config, Mailbox& mailbox, FrameSlot& frames,
+                                               StatusQueue& replies) {
   std::unique_ptr<Service> service(new Service(std::move(config), mailbox, frames, replies));
   Result<std::unique_ptr<Transport>> transport = Transport::open(service->m_config.transport, *service);
   if (!transport) return transport.error();
   service->m_transport = transport.take();
   const auto wake = [loop = service->m_transport.get()] { loop->wake(); };
   service->m_encoder = std::make_unique<EncodeWorker>(wake);
-  service->m_loader = std::make_unique<LoaderWorker>(service->m_config.assetRoot, service->m_config.readScene, mailbox, wake);
+  service->m_loader =
+      std::make_unique<LoaderWorker>(service->m_config.assetRoot, service->m_config.readScene, mailbox, wake);
   frames.onPublish(wake);
   replies.onPush(wake);
   return service;
@@ -98,7 +107,8 @@ void Service::onTick() {
       if (session.greeted) sendStatus(session, status);
   }
   distributeFrames();
-  const bool leave = m_config.idleExitSeconds > 0.0 && m_sessions.empty() && now - m_aloneSince > m_config.idleExitSeconds;
+  const bool leave =
+      m_config.idleExitSeconds > 0.0 && m_sessions.empty() && now - m_aloneSince > m_config.idleExitSeconds;
   if (leave && !m_transport->draining()) {
     logInfo("nobody came for a while: the daemon ends");
     m_transport->drain();

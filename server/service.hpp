@@ -44,9 +44,10 @@ struct ServiceCounters {
 /// Clients on one side, the three boxes of the renderer on the other. Knows no device.
 class Service : private TransportHandler {
  public:
-  /// Listens at once; upgrades are refused until setReady(true). The boxes outlive the service, and the render thread ends
-  /// before the service does. Errors: "listen".
-  static Result<std::unique_ptr<Service>> open(ServiceConfig config, Mailbox& mailbox, FrameSlot& frames, StatusQueue& replies);
+  /// Listens at once; upgrades are refused until setReady(true). The boxes outlive the service, and the render thread
+  /// ends before the service does. Errors: "listen".
+  static Result<std::unique_ptr<Service>> open(ServiceConfig config, Mailbox& mailbox, FrameSlot& frames,
+                                               StatusQueue& replies);
   ~Service() override;
 
   uint16_t port() const { return m_transport->port(); }
@@ -86,6 +87,7 @@ class Service : private TransportHandler {
   // service_replies.cpp: what the renderer says
   friend struct ReplyHandler;
   void routeReplies();
+  void tellAll(const Error& error);
   void describeForAll();
   void learnView(const SceneSummary& scene);
   void broadcastScene(const SceneSummary& scene, protocol::SceneCause cause, ConnectionId except);

@@ -37,7 +37,8 @@ HttpReply Service::onHttp(const HttpRequest& asked) {
   std::string& path = request.headers.path;
   if (path == "/healthz") return plain(200, "alive\n");
   if (path == "/readyz") return m_ready && !m_transport->draining() ? plain(200, "ready\n") : plain(503, "not ready\n");
-  if (const Verdict host = judgeHost(access, request.headers); !host.allowed()) return plain(host.status, host.reason + "\n");
+  if (const Verdict host = judgeHost(access, request.headers); !host.allowed())
+    return plain(host.status, host.reason + "\n");
   if (path == "/metrics") {
     if (!tokenMatches(access, request.headers)) return plain(401, "a valid token is needed\n");
     HttpReply reply = plain(200, metrics());
@@ -53,8 +54,8 @@ HttpReply Service::onHttp(const HttpRequest& asked) {
   if (path == "/" && !token.empty() && !access.token.empty()) {
     if (!equalInConstantTime(access.token, token)) return plain(401, "the token is wrong\n");
     HttpReply reply = redirect(access.basePath + "/");
-    reply.headers.emplace_back("set-cookie:", std::string(kTokenCookie) + "=" + token + "; HttpOnly; SameSite=Strict; Path=" +
-                                                  access.basePath + "/");
+    reply.headers.emplace_back("set-cookie:", std::string(kTokenCookie) + "=" + token +
+                                                  "; HttpOnly; SameSite=Strict; Path=" + access.basePath + "/");
     return reply;
   }
   return serveSite(m_config.site, request);
@@ -67,7 +68,8 @@ std::string Service::metrics() const {
   out.gauge("limn_clients", "Open WebSockets.", wire.clients);
   out.gauge("limn_connections", "Open sockets, HTTP included.", wire.connections);
   out.counter("limn_sessions_total", "WebSockets opened.", double(m_counters.sessions));
-  out.counter("limn_connections_refused_total", "Sockets closed at once, over a limit.", double(wire.connectionsRefused));
+  out.counter("limn_connections_refused_total", "Sockets closed at once, over a limit.",
+              double(wire.connectionsRefused));
   out.counter("limn_upgrades_refused_total", "Upgrades refused by policy.", double(wire.upgradesRefused));
   out.counter("limn_http_requests_total", "HTTP requests answered.", double(wire.httpRequests));
   out.counter("limn_http_refused_total", "HTTP requests answered with an error.", double(wire.httpRefused));
@@ -78,19 +80,22 @@ std::string Service::metrics() const {
   out.counter("limn_messages_oversized_total", "Messages over the limit.", double(wire.oversizedMessages));
   out.counter("limn_read_pauses_total", "Times a client was slowed down.", double(wire.readPauses));
   out.counter("limn_stalled_total", "Clients cut off because they took nothing.", double(wire.stalledKills));
-  out.counter("limn_slow_readers_total", "Clients cut off because too much waited for them.", double(m_counters.slowReaders));
+  out.counter("limn_slow_readers_total", "Clients cut off because too much waited for them.",
+              double(m_counters.slowReaders));
   out.counter("limn_hello_timeouts_total", "Clients closed without a hello.", double(m_counters.helloTimeouts));
   out.counter("limn_ack_timeouts_total", "Clients closed without acknowledgements.", double(m_counters.ackTimeouts));
   out.counter("limn_frames_encoded_total", "Pictures encoded.", double(m_counters.framesEncoded));
   out.counter("limn_frames_sent_total", "Pictures sent.", double(m_counters.framesSent));
   out.counter("limn_frame_bytes_total", "Bytes of pictures sent.", double(m_counters.frameBytes));
-  out.counter("limn_frames_replaced_total", "Pictures replaced by newer ones before they were sent.", double(framesReplaced()));
+  out.counter("limn_frames_replaced_total", "Pictures replaced by newer ones before they were sent.",
+              double(framesReplaced()));
   out.counter("limn_frames_acknowledged_total", "Acknowledgements of pictures.", double(m_counters.acknowledgements));
   out.counter("limn_edits_total", "Edits accepted from clients.", double(m_counters.edits));
   out.counter("limn_requests_total", "Requests to the renderer.", double(m_counters.requests));
   out.counter("limn_errors_total", "Error messages to clients.", double(m_counters.errors));
   out.counter("limn_loads_total", "Scenes asked for.", double(m_counters.loads));
-  out.counter("limn_log_lines_suppressed_total", "Lines of libwebsockets left out of the log.", double(wire.logLinesSuppressed));
+  out.counter("limn_log_lines_suppressed_total", "Lines of libwebsockets left out of the log.",
+              double(wire.logLinesSuppressed));
   out.gauge("limn_callback_max_ms", "Longest callback of the event loop [ms].", wire.maxCallbackMs);
   out.gauge("limn_ready", "1 when clients are taken.", m_ready && !m_transport->draining() ? 1 : 0);
   out.gauge("limn_render_idle", "1 while the loop sleeps.", status.idle ? 1 : 0);
@@ -105,7 +110,8 @@ std::string Service::metrics() const {
   out.counter("limn_render_pipelines_total", "Pipelines created.", status.pipelinesCreated);
   out.gauge("limn_render_discarded_samples", "Samples that were not finite.", double(status.discardedSamples));
   out.beginGauges("limn_device_memory_bytes", "Device memory by owner.");
-  for (const auto& [owner, bytes] : status.memory) out.sample("limn_device_memory_bytes", "owner", owner, double(bytes));
+  for (const auto& [owner, bytes] : status.memory)
+    out.sample("limn_device_memory_bytes", "owner", owner, double(bytes));
   out.beginGauges("limn_stage_ms", "Time of the last picture by stage [ms].");
   for (const StageTime& stage : status.stages) out.sample("limn_stage_ms", "stage", stage.name, stage.ms);
   return out.text();

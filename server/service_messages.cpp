@@ -45,14 +45,17 @@ struct MessageHandler {
   }
   void operator()(const protocol::Ping& ping) const { service.send(session, protocol::Pong{ping.seq, nowSeconds()}); }
   void operator()(const protocol::Load& load) const {
-    if (session.loading) return service.sendError(session, load.seq, error(protocol::kErrorBusy, "a scene is being loaded already"));
+    if (session.loading)
+      return service.sendError(session, load.seq, error(protocol::kErrorBusy, "a scene is being loaded already"));
     if (!service.m_loader->request({session.id(), load.seq}, load.uri, nowSeconds()))
       return service.sendError(session, load.seq, error(protocol::kErrorBusy, "too many scenes wait to be loaded"));
     session.loading = true;
     ++session.unanswered;
     ++service.m_counters.loads;
   }
-  void operator()(const protocol::SetCamera& camera) const { service.edit(session, camera.seq, {protocol::CameraEdit{camera.view}}); }
+  void operator()(const protocol::SetCamera& camera) const {
+    service.edit(session, camera.seq, {protocol::CameraEdit{camera.view}});
+  }
   void operator()(const protocol::SetMessage& set) const { service.edit(session, set.seq, {set.edit}); }
   void operator()(const protocol::Batch& batch) const { service.edit(session, batch.seq, batch.edits); }
   void operator()(const protocol::Pick& pick) const {
@@ -67,9 +70,12 @@ struct MessageHandler {
   void operator()(const protocol::Save& save) const {
     const std::vector<std::string> layers = save.layers.value_or(std::vector<std::string>());
     for (const std::string& layer : layers)
-      if (std::find(service.m_config.layers.begin(), service.m_config.layers.end(), layer) == service.m_config.layers.end())
-        return service.sendError(session, save.seq, error(protocol::kErrorUnknownName, "no such layer: " + printable(layer)));
-    if (session.saving) return service.sendError(session, save.seq, error(protocol::kErrorBusy, "a file is being made already"));
+      if (std::find(service.m_config.layers.begin(), service.m_config.layers.end(), layer) ==
+          service.m_config.layers.end())
+        return service.sendError(session, save.seq,
+                                 error(protocol::kErrorUnknownName, "no such layer: " + printable(layer)));
+    if (session.saving)
+      return service.sendError(session, save.seq, error(protocol::kErrorBusy, "a file is being made already"));
     session.saving = true;
     service.ask(session, save.seq, SaveRequest{{session.id(), save.seq}, layers});
   }
@@ -94,7 +100,8 @@ void Service::onMessage(ConnectionId id, std::string_view text) {
   uint32_t seq = 0;
   const Result<protocol::ClientMessage> message = protocol::decodeClient(text, &seq);
   if (seq != 0 && seq <= session->lastSeq)
-    return sendError(*session, seq, error(protocol::kErrorBadSeq, "seq must rise; the last was " + std::to_string(session->lastSeq)));
+    return sendError(*session, seq,
+                     error(protocol::kErrorBadSeq, "seq must rise; the last was " + std::to_string(session->lastSeq)));
   session->lastSeq = std::max(session->lastSeq, seq);
   if (!message) return sendError(*session, seq, message.error());
   if (session->greeted) return std::visit(MessageHandler{*this, *session}, *message);
@@ -132,8 +139,10 @@ void Service::greet(ClientSession& session, const protocol::ClientHello& hello) 
   answer.server = m_config.serverName;
   answer.device = status.device;
   answer.clientId = session.id();
-  answer.limits = {uint32_t(transport.maxMessageBytes), protocol::kMaxFragmentBytes, uint32_t(FlowControl::kFramesInFlight),
-                   protocol::kMaxEditsPerBatch, m_config.maxImageSide, transport.maxClients, uint32_t(transport.messagesPerSecond)};
+  answer.limits = {
+      uint32_t(transport.maxMessageBytes),  protocol::kMaxFragmentBytes, uint32_t(FlowControl::kFramesInFlight),
+      protocol::kMaxEditsPerBatch,          m_config.maxImageSide,       transport.maxClients,
+      uint32_t(transport.messagesPerSecond)};
   answer.techniques = toWire(m_config.techniques);
   answer.toneMaps.assign(protocol::kToneMaps.begin(), protocol::kToneMaps.end());
   answer.encodings = frameEncodings(session);
@@ -155,8 +164,10 @@ void Service::edit(ClientSession& session, uint32_t seq, const std::vector<proto
   for (const protocol::Edit& wire : edits) {
     const auto* size = std::get_if<protocol::ImageEdit>(&wire);
     if (size && std::max(size->width, size->height) > m_config.maxImageSide)
-      return sendError(session, seq, error(protocol::kErrorOutOfRange, "pictures have at most " +
-                                           std::to_string(m_config.maxImageSide) + " pixels a side", "seq " + std::to_string(seq)));
+      return sendError(session, seq,
+                       error(protocol::kErrorOutOfRange,
+                             "pictures have at most " + std::to_string(m_config.maxImageSide) + " pixels a side",
+                             "seq " + std::to_string(seq)));
     moves |= std::holds_alternative<protocol::CameraEdit>(wire);
     request.edits.push_back(editFromWire(wire, view));
   }

@@ -15,7 +15,8 @@ std::optional<float> finite(float value) { return std::isfinite(value) ? std::op
 
 }  // namespace
 
-/// One overload a reply. `session` is null when the client has left, or when the daemon itself had asked.
+/// One overload a reply. `session` is null when the client has left, or when the daemon itself had asked. An error that
+/// answers nobody concerns all: the renderer has ended.
 struct ReplyHandler {
   Service& service;
   ClientSession* session;
@@ -31,6 +32,7 @@ struct ReplyHandler {
   }
   void operator()(const ErrorReply& reply) const {
     if (service.m_viewEdits.erase({reply.to.client, reply.to.seq}) > 0) service.m_viewDoubtful = true;
+    if (reply.to.client == kNobody) return service.tellAll(reply.error);
     if (!session) return;
     session->saving = false;
     session->loading = false;
@@ -42,7 +44,8 @@ struct ReplyHandler {
     if (reply.to.client == kNobody) return onOwnDescription(*reply.scene);
     if (!session) return;
     const bool joined = reply.to.seq == session->helloSeq;
-    protocol::SceneMessage scene = toWire(*reply.scene, joined ? protocol::SceneCause::joined : protocol::SceneCause::asked);
+    protocol::SceneMessage scene =
+        toWire(*reply.scene, joined ? protocol::SceneCause::joined : protocol::SceneCause::asked);
     if (!joined) scene.seq = reply.to.seq;
     service.send(*session, scene);
   }
@@ -50,7 +53,8 @@ struct ReplyHandler {
     service.learnView(*reply.scene);
     if (session) {
       session->loading = false;
-      service.send(*session, protocol::Loaded{reply.to.seq, reply.loadSeconds, reply.scene->sceneRevision, {reply.scene->hash}});
+      service.send(*session,
+                   protocol::Loaded{reply.to.seq, reply.loadSeconds, reply.scene->sceneRevision, {reply.scene->hash}});
     }
     service.broadcastScene(*reply.scene, protocol::SceneCause::loaded, kNobody);
   }
@@ -98,6 +102,11 @@ void Service::routeReplies() {
     if (session->unanswered > 0) --session->unanswered;
     sendError(*session, failed.to.seq, failed.error);
   }
+}
+
+void Service::tellAll(const Error& error) {
+  for (auto& [id, session] : m_sessions)
+    if (session.greeted) sendError(session, 0, error);
 }
 
 void Service::describeForAll() {

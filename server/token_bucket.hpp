@@ -3,7 +3,8 @@
 
 namespace limn::server {
 
-/// Allows `rate` units a second on average and `burst` at once. May be overdrawn by one take; then it stays empty longer.
+/// Allows `rate` units a second on average and `burst` at once. May be overdrawn by one take; then it stays empty
+/// longer.
 class TokenBucket {
  public:
   TokenBucket(double rate, double burst) : m_rate(rate), m_burst(burst), m_tokens(burst) {}

@@ -36,7 +36,8 @@ struct TransportConfig {
   double drainSeconds = 5.0;                 ///< the longest a drain waits for peers to close
 };
 
-/// A message on its way out. `head` belongs to this connection, `body` may be shared with others and is never written to.
+/// A message on its way out. `head` belongs to this connection, `body` may be shared with others and is never written
+/// to.
 struct OutgoingMessage {
   bool binary = false;
   std::string head;
@@ -99,8 +100,8 @@ class Transport {
   /// Serves until a drain is over.
   virtual void run() = 0;
   virtual void wake() = 0;        ///< any thread
-  /// Any thread: upgrades are refused from now on, the handler says good-bye, and run() returns when every WebSocket is gone
-  /// or `drainSeconds` are over. HTTP is answered until then, so that /readyz can tell.
+  /// Any thread: upgrades are refused from now on, the handler says good-bye, and run() returns when every WebSocket is
+  /// gone or `drainSeconds` are over. HTTP is answered until then, so that /readyz can tell.
   virtual void drain() = 0;
   virtual bool draining() const = 0;
   virtual void wantWrite(ConnectionId id) = 0;

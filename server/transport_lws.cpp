@@ -56,17 +56,21 @@ LwsTransport::~LwsTransport() {
 Result<void> LwsTransport::listen() {
   const std::string address = numericAddress(m_config.address);
   const std::string place = m_config.address + ":" + std::to_string(m_config.port);
-  if (!isIpLiteral(address)) return Error{"listen", "the address to listen on must be an IP address or localhost", place};
+  if (!isIpLiteral(address))
+    return Error{"listen", "the address to listen on must be an IP address or localhost", place};
   installLwsLog();
 
-  // protocols[0] answers HTTP and is what lws takes for sockets without a subprotocol: confirmUpgrade has refused those.
+  // protocols[0] answers HTTP and is what lws takes for sockets without a subprotocol: confirmUpgrade has refused
+  // those.
   m_protocols[0] = {"http", &LwsTransport::httpCallback, sizeof(LwsHttp*), kFragmentBytes, 0, nullptr,
                     kFragmentBytes + LWS_PRE};
-  m_protocols[1] = {protocol::kSubprotocol.data(), &LwsTransport::socketCallback, sizeof(LwsPeer*), kFragmentBytes, 0, nullptr,
-                    kFragmentBytes + LWS_PRE};
+  m_protocols[1] = {
+      protocol::kSubprotocol.data(), &LwsTransport::socketCallback, sizeof(LwsPeer*), kFragmentBytes, 0, nullptr,
+      kFragmentBytes + LWS_PRE};
 
   lws_context_creation_info info{};
-  info.options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS | LWS_SERVER_OPTION_VALIDATE_UTF8 | LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND;
+  info.options =
+      LWS_SERVER_OPTION_EXPLICIT_VHOSTS | LWS_SERVER_OPTION_VALIDATE_UTF8 | LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND;
   if (address.find(':') == std::string::npos) info.options |= LWS_SERVER_OPTION_DISABLE_IPV6;
   info.port = m_config.port;
   info.iface = address == "0.0.0.0" || address == "::" ? nullptr : address.c_str();

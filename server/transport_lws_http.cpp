@@ -97,7 +97,8 @@ void LwsTransport::forgetConnection(lws* wsi) {
 }
 
 int LwsTransport::filterHttp(lws* wsi) {
-  const bool reads = lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0 || lws_hdr_total_length(wsi, WSI_TOKEN_HEAD_URI) > 0;
+  const bool reads =
+      lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0 || lws_hdr_total_length(wsi, WSI_TOKEN_HEAD_URI) > 0;
   const bool hasBody = readHeaders(wsi, "/").hasBody;
   if (reads && !hasBody) return 0;
   ++m_counters.httpRefused;
@@ -105,8 +106,9 @@ int LwsTransport::filterHttp(lws* wsi) {
 }
 
 int LwsTransport::confirmUpgrade(lws* wsi) {
-  // The argument `in` of this callback is never touched: lws 4.1.6 may have freed what it points to (CVE-2025-11677). It
-  // answers an unknown Upgrade with 403 itself and comes here all the same, on a kept-alive connection without headers.
+  // The argument `in` of this callback is never touched: lws 4.1.6 may have freed what it points to (CVE-2025-11677).
+  // It answers an unknown Upgrade with 403 itself and comes here all the same, on a kept-alive connection without
+  // headers.
   if (lws_hdr_total_length(wsi, WSI_TOKEN_UPGRADE) <= 0) return -1;
   const RequestHeaders headers = readHeaders(wsi, "");
   Verdict verdict = judgeUpgrade(m_config.access, headers);
@@ -144,10 +146,12 @@ int LwsTransport::sendHttpHeaders(lws* wsi, const HttpReply& reply) {
   unsigned char* const begin = space.data() + LWS_PRE;
   unsigned char* cursor = begin;
   unsigned char* const end = space.data() + space.size() - 1;
-  if (lws_add_http_common_headers(wsi, unsigned(reply.status), reply.mime.c_str(), reply.body().size(), &cursor, end)) return -1;
+  if (lws_add_http_common_headers(wsi, unsigned(reply.status), reply.mime.c_str(), reply.body().size(), &cursor, end))
+    return -1;
   const auto add = [&](const char* name, std::string_view value) {
     return lws_add_http_header_by_name(wsi, reinterpret_cast<const unsigned char*>(name),
-                                       reinterpret_cast<const unsigned char*>(value.data()), int(value.size()), &cursor, end);
+                                       reinterpret_cast<const unsigned char*>(value.data()), int(value.size()), &cursor,
+                                       end);
   };
   for (const auto& [name, value] : kEveryReply)
     if (add(name, value)) return -1;

@@ -59,9 +59,11 @@ int LwsTransport::receive(LwsPeer& peer, void* in, size_t length) {
   m_counters.bytesReceived += length;
   peer.bytes.take(double(length), now);
   if (peer.closing) return 0;
-  if (lws_frame_is_binary(peer.wsi)) return closeNow(peer.wsi, CloseCode::unacceptable, "messages to the daemon are text");
+  if (lws_frame_is_binary(peer.wsi))
+    return closeNow(peer.wsi, CloseCode::unacceptable, "messages to the daemon are text");
   const bool endsFrame = lws_remaining_packet_payload(peer.wsi) == 0;
-  switch (peer.incoming.add({static_cast<const char*>(in), length}, endsFrame, endsFrame && lws_is_final_fragment(peer.wsi))) {
+  switch (peer.incoming.add({static_cast<const char*>(in), length}, endsFrame,
+                            endsFrame && lws_is_final_fragment(peer.wsi))) {
     case MessageAssembler::State::more: return 0;
     case MessageAssembler::State::complete: return receiveWhole(peer);
     case MessageAssembler::State::tooManyFragments: return closeNow(peer.wsi, CloseCode::policy, "too many fragments");
@@ -152,7 +154,8 @@ void LwsTransport::kill(ConnectionId id) {
 void LwsTransport::watchPeer(LwsPeer& peer, double now) {
   if (peer.readingPaused && !peer.messages.empty(now) && !peer.bytes.empty(now)) {
     peer.readingPaused = false;
-    lws_rx_flow_control(peer.wsi, LWS_RXFLOW_REASON_APPLIES_ENABLE | LWS_RXFLOW_REASON_USER_BOOL | LWS_RXFLOW_REASON_FLAG_PROCESS_NOW);
+    lws_rx_flow_control(
+        peer.wsi, LWS_RXFLOW_REASON_APPLIES_ENABLE | LWS_RXFLOW_REASON_USER_BOOL | LWS_RXFLOW_REASON_FLAG_PROCESS_NOW);
   }
   if (peer.waitingSince > 0.0 && now - peer.waitingSince > m_config.stalledSeconds && !peer.killed) {
     ++m_counters.stalledKills;

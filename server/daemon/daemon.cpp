@@ -16,7 +16,8 @@ namespace {
 
 std::string address(const DaemonOptions& options, uint16_t port) {
   const bool six = options.listenHost.find(':') != std::string::npos;
-  return "http://" + (six ? "[" + options.listenHost + "]" : options.listenHost) + ":" + std::to_string(port) + options.basePath + "/";
+  return "http://" + (six ? "[" + options.listenHost + "]" : options.listenHost) + ":" + std::to_string(port) +
+         options.basePath + "/";
 }
 
 ServiceConfig serviceConfig(const DaemonOptions& options) {
@@ -30,7 +31,9 @@ ServiceConfig serviceConfig(const DaemonOptions& options) {
   config.layers = {"beauty", "direct", "indirect", "albedo", "normal", "depth", "samples", "error"};
   config.stages = {"sample", "resolve"};
   config.assetRoot = options.assetRoot;
-  config.readScene = [root = options.assetRoot](const std::filesystem::path& file) { return loadGltf(file, {root, {}}); };
+  config.readScene = [root = options.assetRoot](const std::filesystem::path& file) {
+    return loadGltf(file, {root, {}});
+  };
   config.site = builtInSite();
   config.idleExitSeconds = options.idleExitSeconds;
   return config;
@@ -39,9 +42,12 @@ ServiceConfig serviceConfig(const DaemonOptions& options) {
 /// What can be told before a device is opened.
 Result<void> checkOptions(const DaemonOptions& options) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(options.scene, error)) return Error{"io", "the scene cannot be read", options.scene.string()};
-  if (!std::filesystem::is_directory(options.assetRoot, error)) return Error{"io", "the asset root is not a directory", options.assetRoot.string()};
-  if (!options.technique.empty() && !findTechnique(options.technique)) return usageError("no technique is named '" + options.technique + "'");
+  if (!std::filesystem::is_regular_file(options.scene, error))
+    return Error{"io", "the scene cannot be read", options.scene.string()};
+  if (!std::filesystem::is_directory(options.assetRoot, error))
+    return Error{"io", "the asset root is not a directory", options.assetRoot.string()};
+  if (!options.technique.empty() && !findTechnique(options.technique))
+    return usageError("no technique is named '" + options.technique + "'");
   if (options.stateDir.empty()) return {};
   std::filesystem::create_directories(options.stateDir, error);
   if (error) return Error{"io", "the state directory cannot be made", options.stateDir.string()};

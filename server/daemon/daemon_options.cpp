@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -29,13 +28,18 @@ Result<std::string> readSmallFile(const fs::path& path, const std::string& flag)
   return text.str();
 }
 
+bool isPlain(std::string_view text, std::string_view marks) {
+  return std::all_of(text.begin(), text.end(), [marks](unsigned char c) {
+    return std::isalnum(c) || marks.find(char(c)) != marks.npos;
+  });
+}
+
 /// Letters, digits and a few marks: what a cookie, a header and a link carry alike.
 Result<std::string> readToken(const fs::path& path) {
   Result<std::string> text = readSmallFile(path, "token-file");
   if (!text) return text.error();
   std::string token = text->substr(0, text->find_first_of("\r\n"));
-  const bool plain = std::all_of(token.begin(), token.end(), [](unsigned char c) { return std::isalnum(c) || std::strchr("-._~", c); });
-  if (!plain || token.size() < kLeastToken || token.size() > kMostToken)
+  if (!isPlain(token, "-._~") || token.size() < kLeastToken || token.size() > kMostToken)
     return Error{"io", "a token is 8 to 512 letters, digits or -._~ on the first line", path.string()};
   return token;
 }
@@ -83,8 +87,8 @@ Result<void> readListen(const std::string& text, DaemonOptions& options) {
 
 Result<void> readBasePath(std::string path, DaemonOptions& options) {
   while (path.ends_with('/')) path.pop_back();
-  const bool plain = std::all_of(path.begin(), path.end(), [](unsigned char c) { return std::isalnum(c) || std::strchr("/-._~", c); });
-  if (!path.empty() && (path[0] != '/' || !plain || path.find("..") != path.npos || path.find("//") != path.npos))
+  const bool plain = isPlain(path, "/-._~") && path.find("..") == path.npos && path.find("//") == path.npos;
+  if (!path.empty() && (path[0] != '/' || !plain))
     return usageError("--base-path is a path like /viewer, not '" + path + "'");
   options.basePath = std::move(path);
   return {};
@@ -149,7 +153,8 @@ Result<DaemonOptions> readDaemonOptions(const std::vector<std::string>& words) {
   DaemonOptions options;
   options.scene = arguments->text("scene");
   options.allowedOrigins = arguments->all("allow-origin");
-  options.assetRoot = arguments->text("asset-root", options.scene.has_parent_path() ? options.scene.parent_path().string() : ".");
+  options.assetRoot =
+      arguments->text("asset-root", options.scene.has_parent_path() ? options.scene.parent_path().string() : ".");
   options.device = arguments->text("device");
   options.technique = arguments->text("technique");
   options.stateDir = arguments->text("state-dir");

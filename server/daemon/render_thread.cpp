@@ -18,15 +18,17 @@ Result<std::unique_ptr<vk::Device>> openDevice(const DaemonOptions& options) {
   return vk::Device::open(wanted);
 }
 
-Result<std::unique_ptr<Session>> makeSession(vk::Device& device, const DaemonOptions& options, Mailbox& mailbox, FrameSlot& frames,
-                                             StatusQueue& replies) {
+Result<std::unique_ptr<Session>> makeSession(vk::Device& device, const DaemonOptions& options, Mailbox& mailbox,
+                                             FrameSlot& frames, StatusQueue& replies) {
   const double begin = nowSeconds();
   Result<LoadedScene> loaded = loadGltf(options.scene, {options.assetRoot, {}});
   if (!loaded) return loaded.error();
   char seconds[32];
   std::snprintf(seconds, sizeof seconds, "%.2f s", nowSeconds() - begin);
-  logInfo(options.scene.filename().string() + ": " + std::to_string(loaded->report.triangles) + " triangles, read in " + seconds);
-  for (const LoadReport::Item& item : loaded->report.unsupported) logWarning("not supported: " + item.feature + ": " + item.note);
+  logInfo(options.scene.filename().string() + ": " + std::to_string(loaded->report.triangles) + " triangles, read in " +
+          seconds);
+  for (const LoadReport::Item& item : loaded->report.unsupported)
+    logWarning("not supported: " + item.feature + ": " + item.note);
   for (const std::string& note : loaded->report.notes) logInfo(note);
 
   SessionConfig config;
@@ -70,6 +72,7 @@ void RenderThread::run(const DaemonOptions& options, FrameSlot& frames, StatusQu
       m_outcome = session.error();
     }
   }
+  if (!m_outcome) replies.push(ErrorReply{{}, m_outcome.error()});
   callbacks.ended();
 }
 

@@ -21,7 +21,8 @@ RequestHeaders good() {
   return headers;
 }
 
-int statusWithOrigin(const AccessPolicy& policy, const std::string& origin, const std::string& host = "127.0.0.1:8080") {
+int statusWithOrigin(const AccessPolicy& policy, const std::string& origin,
+                     const std::string& host = "127.0.0.1:8080") {
   RequestHeaders headers = good();
   headers.host = host;
   headers.hasOrigin = true;
@@ -39,8 +40,9 @@ TEST(Access, originMatrix) {
   EXPECT_EQ(statusWithOrigin(policy, "http://localhost:8080", "localhost:8080"), 200);
   for (const char* origin :
        {"null", "", "http://evil.example", "http://127.0.0.1:8081", "http://127.0.0.1", "http://localhost:8080",
-        "http://127.0.0.1:8080.evil.example", "http://evil.127.0.0.1:8080", "http://*", "http://127.0.0.1:8080,http://evil.example",
-        "http://127.0.0.1:8080/", "http://user@127.0.0.1:8080", "file://127.0.0.1:8080", "127.0.0.1:8080"})
+        "http://127.0.0.1:8080.evil.example", "http://evil.127.0.0.1:8080", "http://*",
+        "http://127.0.0.1:8080,http://evil.example", "http://127.0.0.1:8080/", "http://user@127.0.0.1:8080",
+        "file://127.0.0.1:8080", "127.0.0.1:8080"})
     EXPECT_EQ(statusWithOrigin(policy, origin), 403) << origin;
 }
 
@@ -60,8 +62,8 @@ TEST(Access, hostMatrixOfALoopbackListener) {
     headers.host = host;
     EXPECT_TRUE(judgeHost(loopback(), headers).allowed()) << host;
   }
-  for (const char* host : {"evil.example", "evil.example:8080", "localhost.evil.example", "127.0.0.1.evil.example", "10.0.0.1:8080",
-                           "127.", "127.0.0.1x", "[::2]:8080", "[fe80::1"}) {
+  for (const char* host : {"evil.example", "evil.example:8080", "localhost.evil.example", "127.0.0.1.evil.example",
+                           "10.0.0.1:8080", "127.", "127.0.0.1x", "[::2]:8080", "[fe80::1"}) {
     RequestHeaders headers = good();
     headers.host = host;
     EXPECT_EQ(judgeHost(loopback(), headers).status, 403) << host;

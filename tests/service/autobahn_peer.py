@@ -152,9 +152,11 @@ CASES = {
     "reserved opcode": ends_with(None, {"opcode": 3, "payload": b""}),
     "reserved control opcode": ends_with(None, {"opcode": 11, "payload": b""}),
     "continuation of nothing": ends_with(None, {"opcode": 0, "payload": b"x"}),
-    "text inside of a fragmented text": ends_with(None, {"opcode": 1, "payload": b"{", "fin": False}, {"opcode": 1, "payload": b"}"}),
+    "text inside of a fragmented text": ends_with(None, {"opcode": 1, "payload": b"{", "fin": False},
+                                                  {"opcode": 1, "payload": b"}"}),
     "not UTF-8": ends_with(1007, {"opcode": 1, "payload": b"\xce\xba\xe1\xbd\xb9\xcf\x83\xce\xbc\xce\xb5\xed\xa0\x80"}),
-    "not UTF-8 across fragments": ends_with(1007, {"opcode": 1, "payload": b"\xce", "fin": False}, {"opcode": 0, "payload": b"\xce"}),
+    "not UTF-8 across fragments": ends_with(1007, {"opcode": 1, "payload": b"\xce", "fin": False},
+                                            {"opcode": 0, "payload": b"\xce"}),
     "binary": ends_with(1003, {"opcode": 2, "payload": b"abc"}),
 }
 

@@ -31,7 +31,8 @@ TEST(Conversation, statusTellsTheDeviceAndTheClientsShare) {
   TestService server;
   TestClient client(server.port());
   client.greet();
-  const auto status = client.await<protocol::Status>([](const protocol::Status& s) { return s.idle && s.framesSent > 0; });
+  const auto status =
+      client.await<protocol::Status>([](const protocol::Status& s) { return s.idle && s.framesSent > 0; });
   EXPECT_EQ(status.clients, 1u);
   EXPECT_EQ(status.technique, "fake");
   EXPECT_EQ(status.phase, protocol::Phase::converged);
@@ -56,8 +57,10 @@ TEST(Conversation, everyEditIsAcknowledgedWithItsCost) {
   client.send(moveCamera(seq, 3.0));
   EXPECT_EQ(client.awaitReply<protocol::Ack>(seq).cost, protocol::CostClass::reGather);
   seq = client.nextSeq();
-  protocol::Batch batch{seq, {protocol::MaterialEdit{}, protocol::LightEdit{}, protocol::NodeEdit{}, protocol::EnvironmentEdit{},
-                              protocol::CameraEdit{}, protocol::TechniqueEdit{}, protocol::ResolveEdit{}, protocol::ImageEdit{64, 48}}};
+  protocol::Batch batch{
+      seq,
+      {protocol::MaterialEdit{}, protocol::LightEdit{}, protocol::NodeEdit{}, protocol::EnvironmentEdit{},
+       protocol::CameraEdit{}, protocol::TechniqueEdit{}, protocol::ResolveEdit{}, protocol::ImageEdit{64, 48}}};
   client.send(batch);
   EXPECT_EQ(client.awaitReply<protocol::Ack>(seq).seq, seq);
 }
@@ -128,7 +131,8 @@ TEST(Conversation, saveSendsAFileThatTakesNoCredit) {
   const uint32_t seq = client.nextSeq();
   client.send(protocol::Save{seq, std::vector<std::string>{"beauty"}});
   EXPECT_EQ(client.awaitReply<protocol::Saved>(seq).bytes, 300000u);
-  const auto file = client.awaitPicture([](const protocol::FrameHeader& h) { return h.kind == protocol::FrameKind::file; });
+  const auto file =
+      client.awaitPicture([](const protocol::FrameHeader& h) { return h.kind == protocol::FrameKind::file; });
   EXPECT_EQ(file.header.ackSeq, seq);
   EXPECT_EQ(file.payload.size(), 300000u);
   EXPECT_LE(client.longestFragment, protocol::kMaxFragmentBytes);
@@ -219,6 +223,19 @@ TEST(Conversation, drainSaysByeAndClosesWith1001) {
   EXPECT_EQ(client.closeCode, 1001);
   server.loop.join();
   server.loop = std::thread([] {});
+}
+
+TEST(Conversation, theEndOfTheRendererIsToldToAll) {
+  TestService server;
+  TestClient first(server.port()), second(server.port());
+  first.greet(false);
+  second.greet(false);
+  server.replies.push(ErrorReply{{}, {"device-lost", "the device was lost", ""}});
+  for (TestClient* client : {&first, &second}) {
+    const auto error = client->await<protocol::ErrorMessage>();
+    EXPECT_EQ(error.code, "device-lost");
+    EXPECT_FALSE(error.seq);
+  }
 }
 
 TEST(Conversation, clientsThatDoNotWatchGetNoPictures) {

@@ -42,10 +42,31 @@ TEST_F(DaemonOptionsTest, defaultsAreLocal) {
 
 TEST_F(DaemonOptionsTest, everyFlagIsRead) {
   const std::string token = file("token", "s3cret-token\n");
-  const auto options = readDaemonOptions(
-      {"--scene", "a.glb", "--listen", "[::1]:0", "--token-file", token, "--allow-origin", "https://a", "--allow-origin=https://b",
-       "--asset-root", "/srv", "--device", "llvmpipe", "--technique", "path-tracing", "--size", "640x360", "--max-clients", "3",
-       "--idle-exit", "900", "--state-dir", "/var/limn", "--base-path", "/s/7/"});
+  const auto options = readDaemonOptions({"--scene",
+                                          "a.glb",
+                                          "--listen",
+                                          "[::1]:0",
+                                          "--token-file",
+                                          token,
+                                          "--allow-origin",
+                                          "https://a",
+                                          "--allow-origin=https://b",
+                                          "--asset-root",
+                                          "/srv",
+                                          "--device",
+                                          "llvmpipe",
+                                          "--technique",
+                                          "path-tracing",
+                                          "--size",
+                                          "640x360",
+                                          "--max-clients",
+                                          "3",
+                                          "--idle-exit",
+                                          "900",
+                                          "--state-dir",
+                                          "/var/limn",
+                                          "--base-path",
+                                          "/s/7/"});
   ASSERT_TRUE(options.ok()) << options.error().text();
   EXPECT_EQ(options->listenHost, "::1");
   EXPECT_EQ(options->port, 0);
@@ -70,11 +91,20 @@ TEST_F(DaemonOptionsTest, configurationFillsWhatWasNotGiven) {
 }
 
 TEST_F(DaemonOptionsTest, wrongFlagsAreUsageErrors) {
-  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-           {}, {"--scene", "a", "--nonsense"}, {"--scene", "a", "--listen", "8080"}, {"--scene", "a", "--listen", "host.example:80"},
-           {"--scene", "a", "--listen", "127.0.0.1:70000"}, {"--scene", "a", "--size", "0x7"}, {"--scene", "a", "--size", "9000x7"},
-           {"--scene", "a", "--max-clients", "0"}, {"--scene", "a", "--idle-exit", "-1"}, {"--scene", "a", "--base-path", "x"},
-           {"--scene", "a", "--base-path", "/a/../b"}, {"--scene", "a", "extra"}, {"--scene"}})
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{},
+                                             {"--scene", "a", "--nonsense"},
+                                             {"--scene", "a", "--listen", "8080"},
+                                             {"--scene", "a", "--listen", "host.example:80"},
+                                             {"--scene", "a", "--listen", "127.0.0.1:70000"},
+                                             {"--scene", "a", "--size", "0x7"},
+                                             {"--scene", "a", "--size", "9000x7"},
+                                             {"--scene", "a", "--max-clients", "0"},
+                                             {"--scene", "a", "--idle-exit", "-1"},
+                                             {"--scene", "a", "--base-path", "x"},
+                                             {"--scene", "a", "--base-path", "/a/../b"},
+                                             {"--scene", "a", "extra"},
+                                             {"--scene"}})
     EXPECT_EQ(errorOf(words).code, "usage") << ::testing::PrintToString(words);
 }
 
@@ -89,7 +119,8 @@ TEST_F(DaemonOptionsTest, wrongConfigurationsAreErrors) {
 
 TEST_F(DaemonOptionsTest, listeningBeyondThisMachineNeedsAToken) {
   EXPECT_EQ(errorOf({"--scene", "a", "--listen", "0.0.0.0:80"}).code, "token");
-  EXPECT_TRUE(readDaemonOptions({"--scene", "a", "--listen", "0.0.0.0:80", "--token-file", file("t", "0123456789")}).ok());
+  EXPECT_TRUE(
+      readDaemonOptions({"--scene", "a", "--listen", "0.0.0.0:80", "--token-file", file("t", "0123456789")}).ok());
 }
 
 TEST_F(DaemonOptionsTest, poorTokensAreRefused) {

@@ -129,7 +129,9 @@ void FakeRenderer::answerWaits() {
   });
 }
 
-std::shared_ptr<const SceneSummary> FakeRenderer::describe() const { return std::make_shared<const SceneSummary>(m_scene); }
+std::shared_ptr<const SceneSummary> FakeRenderer::describe() const {
+  return std::make_shared<const SceneSummary>(m_scene);
+}
 
 void FakeRenderer::publish() {
   auto frame = std::make_shared<Frame>();

@@ -7,8 +7,8 @@
 
 namespace limn::server::testing {
 
-/// Stands where the render thread stands: drains a mailbox, answers, publishes pictures that can be told apart. Every edit
-/// restarts it; after `passes` pictures it has converged and sleeps.
+/// Stands where the render thread stands: drains a mailbox, answers, publishes pictures that can be told apart. Every
+/// edit restarts it; after `passes` pictures it has converged and sleeps.
 class FakeRenderer {
  public:
   struct Options {

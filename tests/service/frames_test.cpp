@@ -79,7 +79,8 @@ TEST(Frames, neverMoreThanTwoInFlight) {
   client.greet();
   const auto first = client.awaitPicture(), second = client.awaitPicture();
   // The renderer goes on; the ping's answer is behind anything the server would have sent.
-  for (const uint64_t target = server.renderer->framesPublished() + 20; server.renderer->framesPublished() < target;) std::this_thread::yield();
+  for (const uint64_t target = server.renderer->framesPublished() + 20; server.renderer->framesPublished() < target;)
+    std::this_thread::yield();
   const uint32_t seq = client.nextSeq();
   client.send(protocol::Ping{seq});
   client.awaitReply<protocol::Pong>(seq);
@@ -149,7 +150,8 @@ TEST(Frames, clientsThatShareAPictureGetItUncorrupted) {
       for (int n = 0; n < 40; ++n) {
         const auto picture = client.awaitPicture();
         uint32_t width = 0, height = 0;
-        EXPECT_EQ(decodeImage(picture.payload, Encoding::png, width, height), rgbOf(options.renderer, picture.header.frameId));
+        EXPECT_EQ(decodeImage(picture.payload, Encoding::png, width, height),
+                  rgbOf(options.renderer, picture.header.frameId));
         const std::lock_guard lock(mutex);
         crcs[picture.header.frameId].push_back(picture.header.crc32c);
       }
@@ -162,7 +164,8 @@ TEST(Frames, clientsThatShareAPictureGetItUncorrupted) {
     for (const uint32_t crc : values) EXPECT_EQ(crc, values[0]);
   }
   EXPECT_GT(shared, 0u) << "no picture was seen by two";
-  EXPECT_LT(server.metric("limn_frames_encoded_total"), server.metric("limn_frames_sent_total")) << "nothing was shared";
+  EXPECT_LT(server.metric("limn_frames_encoded_total"), server.metric("limn_frames_sent_total"))
+      << "nothing was shared";
 }
 
 TEST(Frames, nothingIsEncodedWithoutACredit) {
@@ -173,7 +176,8 @@ TEST(Frames, nothingIsEncodedWithoutACredit) {
   client.awaitPicture();
   client.awaitPicture();
   const double encoded = server.metric("limn_frames_encoded_total");
-  for (const uint64_t target = server.renderer->framesPublished() + 50; server.renderer->framesPublished() < target;) std::this_thread::yield();
+  for (const uint64_t target = server.renderer->framesPublished() + 50; server.renderer->framesPublished() < target;)
+    std::this_thread::yield();
   EXPECT_EQ(server.metric("limn_frames_encoded_total"), encoded);
   EXPECT_LE(encoded, 3.0);
 }

@@ -74,7 +74,8 @@ TEST(Http, largeFilesArriveWhole) {
 
 TEST(Http, nothingElseIsThere) {
   TestService server(withSite());
-  for (const char* path : {"/nothing", "/../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "//etc/passwd", "/assets/", "/index.html/x"}) {
+  for (const char* path :
+       {"/nothing", "/../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "//etc/passwd", "/assets/", "/index.html/x"}) {
     RawClient client(server.port());
     const int status = client.request(std::string("GET ") + path + " HTTP/1.1", {kHost}).status;
     EXPECT_TRUE(status == 404 || status == 403 || status == 400) << path << " " << status;
@@ -92,7 +93,8 @@ TEST(Http, onlyGetAndHead) {
 
 TEST(Http, requestsWithBodiesAreRefused) {
   TestService server(withSite());
-  for (const char* header : {"Content-Length: 5", "Content-Length: -1", "Content-Length: 99999999999999999999", "Transfer-Encoding: chunked"}) {
+  for (const char* header : {"Content-Length: 5", "Content-Length: -1", "Content-Length: 99999999999999999999",
+                             "Transfer-Encoding: chunked"}) {
     RawClient client(server.port());
     const int status = client.request("GET / HTTP/1.1", {kHost, header}).status;
     EXPECT_TRUE(status == 400 || status == 0) << header << " " << status;
@@ -146,7 +148,8 @@ TEST(Http, theTokenLinkBecomesACookie) {
   EXPECT_EQ(RawClient().upgrade(server.port(), {{"Sec-WebSocket-Protocol", "limn.v1, bearer.c2VjcmV0LTc"}}), 101);
   EXPECT_EQ(RawClient().upgrade(server.port()), 401);
   EXPECT_EQ(RawClient(server.port()).request("GET /metrics HTTP/1.1", {kHost}).status, 401);
-  EXPECT_EQ(RawClient(server.port()).request("GET /metrics HTTP/1.1", {kHost, "Authorization: Bearer secret-7"}).status, 200);
+  EXPECT_EQ(RawClient(server.port()).request("GET /metrics HTTP/1.1", {kHost, "Authorization: Bearer secret-7"}).status,
+            200);
 }
 
 TEST(Http, refusedHandshakesMakeNoSession) {
@@ -154,14 +157,23 @@ TEST(Http, refusedHandshakesMakeNoSession) {
   const std::string port = std::to_string(server.port());
   const std::string own = "http://127.0.0.1:" + port;
   const std::vector<std::pair<std::map<std::string, std::string>, int>> cases{
-      {{{"Origin", "http://evil.example"}}, 403}, {{{"Origin", "null"}}, 403}, {{{"Origin", own + "\r\nOrigin: http://evil.example"}}, 403},
-      {{{"Origin", "http://127.0.0.1:1"}}, 403}, {{{"Origin", "http://" + std::string(5000, 'a')}}, 400},
-      {{{"Host", "evil.example"}}, 403}, {{{"Host", "evil.example:" + port}}, 403},
-      {{{"Sec-WebSocket-Protocol", ""}}, 400}, {{{"Sec-WebSocket-Protocol", "limn.v2"}}, 400}, {{{"Sec-WebSocket-Protocol", "chat"}}, 400},
-      {{{"Sec-WebSocket-Version", "8"}}, 426}, {{{"Sec-WebSocket-Version", ""}}, 426}, {{{"Upgrade", "h2c"}}, 400},
+      {{{"Origin", "http://evil.example"}}, 403},
+      {{{"Origin", "null"}}, 403},
+      {{{"Origin", own + "\r\nOrigin: http://evil.example"}}, 403},
+      {{{"Origin", "http://127.0.0.1:1"}}, 403},
+      {{{"Origin", "http://" + std::string(5000, 'a')}}, 400},
+      {{{"Host", "evil.example"}}, 403},
+      {{{"Host", "evil.example:" + port}}, 403},
+      {{{"Sec-WebSocket-Protocol", ""}}, 400},
+      {{{"Sec-WebSocket-Protocol", "limn.v2"}}, 400},
+      {{{"Sec-WebSocket-Protocol", "chat"}}, 400},
+      {{{"Sec-WebSocket-Version", "8"}}, 426},
+      {{{"Sec-WebSocket-Version", ""}}, 426},
+      {{{"Upgrade", "h2c"}}, 400},
       {{{"Upgrade", "h2c, websocket"}}, 403}};
   for (const auto& [headers, status] : cases)
-    EXPECT_EQ(RawClient().upgrade(server.port(), headers), status) << headers.begin()->first << ": " << headers.begin()->second.substr(0, 60);
+    EXPECT_EQ(RawClient().upgrade(server.port(), headers), status)
+        << headers.begin()->first << ": " << headers.begin()->second.substr(0, 60);
   EXPECT_EQ(RawClient().upgrade(server.port(), {}, "/"), 404);
   EXPECT_EQ(RawClient().upgrade(server.port(), {}, "/ws/x"), 404);
   EXPECT_EQ(server.metric("limn_sessions_total"), 0.0);
@@ -175,8 +187,9 @@ TEST(Http, keptAliveConnectionThenABadUpgrade) {
   for (const char* upgrade : {"x", "h2c", "websocketx", ""}) {
     RawClient client(server.port());
     ASSERT_EQ(client.request("GET / HTTP/1.1", {kHost, "Connection: keep-alive"}).status, 200);
-    const auto reply = client.request("GET /ws HTTP/1.1", {kHost, "Connection: Upgrade", std::string("Upgrade: ") + upgrade,
-                                                          "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==", "Sec-WebSocket-Version: 13"});
+    const auto reply = client.request("GET /ws HTTP/1.1",
+                                      {kHost, "Connection: Upgrade", std::string("Upgrade: ") + upgrade,
+                                       "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==", "Sec-WebSocket-Version: 13"});
     EXPECT_TRUE(reply.status == 400 || reply.status == 403 || reply.status == 404) << upgrade << reply.status;
   }
   EXPECT_EQ(RawClient().upgrade(server.port()), 101);

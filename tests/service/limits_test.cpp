@@ -44,7 +44,8 @@ TEST(Limits, fragmentsAreJoinedUpToTheirLimit) {
   const std::string text = paddedPing(2, protocol::kMaxFragments);
   std::string bytes;
   for (size_t i = 0; i < text.size(); ++i)
-    bytes += frameBytes(i == 0 ? RawClient::Opcode::text : RawClient::Opcode::continuation, text.substr(i, 1), i + 1 == text.size(), true);
+    bytes += frameBytes(i == 0 ? RawClient::Opcode::text : RawClient::Opcode::continuation, text.substr(i, 1),
+                        i + 1 == text.size(), true);
   client.socket.sendBytes(bytes);
   EXPECT_EQ(client.awaitReply<protocol::Pong>(2).seq, 2u);
 }
@@ -56,7 +57,8 @@ TEST(Limits, oneFragmentMoreClosesWith1008) {
   const std::string text = paddedPing(2, protocol::kMaxFragments + 1);
   std::string bytes;
   for (size_t i = 0; i < text.size(); ++i)
-    bytes += frameBytes(i == 0 ? RawClient::Opcode::text : RawClient::Opcode::continuation, text.substr(i, 1), i + 1 == text.size(), true);
+    bytes += frameBytes(i == 0 ? RawClient::Opcode::text : RawClient::Opcode::continuation, text.substr(i, 1),
+                        i + 1 == text.size(), true);
   client.socket.sendBytes(bytes);
   EXPECT_EQ(client.socket.waitForClose(), 1008);
 }
@@ -119,7 +121,8 @@ TEST(Limits, aBatchOverTheLimitIsRefusedAndOneAtTheLimitIsTaken) {
   client.greet(false);
   const auto batchOf = [](uint32_t seq, uint32_t edits) {
     std::string text = R"({"op":"batch","seq":)" + std::to_string(seq) + R"(,"edits":[)";
-    for (uint32_t i = 0; i < edits; ++i) text += std::string(i ? "," : "") + R"({"target":"material","material":0,"metallic":1})";
+    for (uint32_t i = 0; i < edits; ++i)
+      text += std::string(i ? "," : "") + R"({"target":"material","material":0,"metallic":1})";
     return text + "]}";
   };
   client.sendWrong(batchOf(2, protocol::kMaxEditsPerBatch));
@@ -144,7 +147,8 @@ TEST(Limits, aFullMailboxIsToldAsBusy) {
     EXPECT_EQ(error.seq, first + ClientSession::kMaxUnanswered + i);
   }
   server.renderer->hold(false);
-  EXPECT_EQ(client.awaitReply<protocol::Ack>(first + ClientSession::kMaxUnanswered - 1).cost, protocol::CostClass::relight);
+  EXPECT_EQ(client.awaitReply<protocol::Ack>(first + ClientSession::kMaxUnanswered - 1).cost,
+            protocol::CostClass::relight);
 }
 
 }  // namespace

@@ -52,7 +52,8 @@ uint64_t convergedHash(TestClient& client) {
 }
 
 std::vector<uint8_t> pictureAtRest(TestClient& client, uint32_t edit) {
-  const auto last = client.awaitPicture([&](const auto& h) { return (h.flags & protocol::kFrameFinal) && h.ackSeq >= edit; });
+  const auto last =
+      client.awaitPicture([&](const auto& h) { return (h.flags & protocol::kFrameFinal) && h.ackSeq >= edit; });
   uint32_t width = 0, height = 0;
   return decodeImage(last.payload, last.header.encoding, width, height);
 }
@@ -114,7 +115,8 @@ TEST(Limnd, malformedMessagesAndFilesLeaveTheSceneAsItIs) {
   endAfter(client, 4);
   const uint64_t before = convergedHash(client);
   const std::string unknown = R"({"op":"explode","seq":)" + std::to_string(client.nextSeq()) + "}";
-  for (const std::string& text : {std::string("{"), std::string(R"({"op":"set","target":"material"})"), unknown, std::string("[]")}) {
+  for (const std::string& text :
+       {std::string("{"), std::string(R"({"op":"set","target":"material"})"), unknown, std::string("[]")}) {
     client.sendWrong(text);
     client.await<protocol::ErrorMessage>();
   }
@@ -187,7 +189,8 @@ TEST(Limnd, aTakenPortIsOneLineAndExit1) {
   Daemon daemon;
   ChildProcess second(kProgram, {"--scene", kScene, "--listen", "127.0.0.1:" + std::to_string(daemon.port)});
   EXPECT_EQ(second.wait(), 1);
-  EXPECT_NE(second.errors().find("limnd: 127.0.0.1:" + std::to_string(daemon.port)), std::string::npos) << second.errors();
+  EXPECT_NE(second.errors().find("limnd: 127.0.0.1:" + std::to_string(daemon.port)), std::string::npos)
+      << second.errors();
 }
 
 TEST(Limnd, startUpFailuresAreOneLineAndExit1) {
@@ -207,8 +210,8 @@ TEST(Limnd, startUpFailuresAreOneLineAndExit1) {
 }
 
 TEST(Limnd, usageErrorsExitWith64) {
-  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{}, {"--scene", kScene, "--nonsense"},
-                                                                                    {"--scene", kScene, "--technique", "magic"}}) {
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {}, {"--scene", kScene, "--nonsense"}, {"--scene", kScene, "--technique", "magic"}}) {
     ChildProcess process(kProgram, words);
     EXPECT_EQ(process.wait(), 64);
     const std::string errors = process.errors();

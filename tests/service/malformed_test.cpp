@@ -42,7 +42,9 @@ const std::vector<Wrong>& wrongMessages() {
       {"indexOutOfRange", R"({"op":"set","seq":20,"target":"material","material":99,"roughness":0.5})", "out-of-range"},
       {"shortVector", R"({"op":"camera","seq":21,"eye":[0,0],"target":[0,0,0],"up":[0,1,0]})", "bad-message"},
       {"emptyBatch", R"({"op":"batch","seq":22,"edits":[]})", "out-of-range"},
-      {"wrongEditInBatch", R"({"op":"batch","seq":23,"edits":[{"target":"material","material":0},{"target":"material","material":0,"metallic":-1}]})", "out-of-range"},
+      {"wrongEditInBatch",
+       R"({"op":"batch","seq":23,"edits":[{"target":"light","light":0},{"target":"light","light":0,"range":-1}]})",
+       "out-of-range"},
       {"unknownToneMap", R"({"op":"set","seq":24,"target":"resolve","toneMap":"sepia"})", "out-of-range"},
       {"imageTooLarge", R"({"op":"set","seq":25,"target":"image","width":8192,"height":64})", "out-of-range"},
       {"imageTooSmall", R"({"op":"set","seq":26,"target":"image","width":1,"height":64})", "out-of-range"},
@@ -131,8 +133,9 @@ TEST(Malformed, textThatIsNotUtf8ClosesWith1007) {
 
 TEST(Malformed, reservedBitsAndOpcodesEndTheConnection) {
   TestService server;
-  for (const std::string& bytes : {std::string("\xc1\x80\x00\x00\x00\x00", 6), std::string("\x83\x80\x00\x00\x00\x00", 6),
-                                  std::string("\x80\x80\x00\x00\x00\x00", 6)}) {
+  for (const std::string& bytes :
+       {std::string("\xc1\x80\x00\x00\x00\x00", 6), std::string("\x83\x80\x00\x00\x00\x00", 6),
+        std::string("\x80\x80\x00\x00\x00\x00", 6)}) {
     TestClient client(server.port());
     client.greet(false);
     client.socket.sendBytes(bytes);

@@ -65,8 +65,10 @@ TEST(Peers, whatWaitsForASlowReaderIsBounded) {
 
 TEST(Peers, theyMayVanishAtAnyByte) {
   TestService server;
-  const std::string hello = frameBytes(RawClient::Opcode::text, R"({"op":"hello","seq":1,"version":1,"client":"cut"})", true, true);
-  const std::string edit = frameBytes(RawClient::Opcode::text, R"({"op":"set","seq":2,"target":"material","material":0,"roughness":0.5})", true, true);
+  const std::string hello =
+      frameBytes(RawClient::Opcode::text, R"({"op":"hello","seq":1,"version":1,"client":"cut"})", true, true);
+  const std::string edit = frameBytes(
+      RawClient::Opcode::text, R"({"op":"set","seq":2,"target":"material","material":0,"roughness":0.5})", true, true);
   const std::string whole = RawClient::handshake(server.port()) + hello + edit;
   for (size_t cut = 0; cut <= whole.size(); cut += 7)
     for (const bool reset : {false, true}) {
@@ -161,7 +163,8 @@ TEST(Loading, aSceneUnderTheRootIsLoadedAndToldToAll) {
   const auto loaded = asks.awaitReply<protocol::Loaded>(12);
   EXPECT_NE(loaded.hash.value, before.hash.value);
   for (TestClient* client : {&asks, &other}) {
-    const auto scene = client->await<protocol::SceneMessage>([](const auto& s) { return s.cause == protocol::SceneCause::loaded; });
+    const auto scene =
+        client->await<protocol::SceneMessage>([](const auto& s) { return s.cause == protocol::SceneCause::loaded; });
     EXPECT_EQ(scene.name, "room.glb");
     EXPECT_EQ(scene.hash.value, loaded.hash.value);
   }

@@ -18,7 +18,8 @@ uint16_t RawClient::Message::closeCode() const {
   return payload.size() < 2 ? uint16_t(0) : uint16_t(uint8_t(payload[0]) << 8 | uint8_t(payload[1]));
 }
 
-RawClient::RawClient(RawClient&& other) noexcept : m_socket(std::exchange(other.m_socket, -1)), m_buffer(std::move(other.m_buffer)) {}
+RawClient::RawClient(RawClient&& other) noexcept
+    : m_socket(std::exchange(other.m_socket, -1)), m_buffer(std::move(other.m_buffer)) {}
 
 void RawClient::connect(uint16_t port, int receiveBuffer) {
   shut();
@@ -110,10 +111,14 @@ RawClient::Reply RawClient::request(const std::string& line, std::vector<std::st
   return readReply(line.starts_with("HEAD"));
 }
 
-std::string RawClient::handshake(uint16_t port, const std::map<std::string, std::string>& replace, const std::string& path) {
-  std::map<std::string, std::string> headers{
-      {"Host", "127.0.0.1:" + std::to_string(port)}, {"Upgrade", "websocket"}, {"Connection", "Upgrade"},
-      {"Sec-WebSocket-Key", "dGhlIHNhbXBsZSBub25jZQ=="}, {"Sec-WebSocket-Version", "13"}, {"Sec-WebSocket-Protocol", "limn.v1"}};
+std::string RawClient::handshake(uint16_t port, const std::map<std::string, std::string>& replace,
+                                 const std::string& path) {
+  std::map<std::string, std::string> headers{{"Host", "127.0.0.1:" + std::to_string(port)},
+                                             {"Upgrade", "websocket"},
+                                             {"Connection", "Upgrade"},
+                                             {"Sec-WebSocket-Key", "dGhlIHNhbXBsZSBub25jZQ=="},
+                                             {"Sec-WebSocket-Version", "13"},
+                                             {"Sec-WebSocket-Protocol", "limn.v1"}};
   for (const auto& [name, value] : replace) headers[name] = value;
   std::string text = "GET " + path + " HTTP/1.1\r\n";
   for (const auto& [name, value] : headers)

@@ -44,7 +44,8 @@ class RawClient {
   /// "GET / HTTP/1.1" and the headers given, each "Name: value".
   Reply request(const std::string& line, std::vector<std::string> headers = {});
   /// A good handshake for `port`, with `replace`d or added headers; an empty value leaves the header out.
-  static std::string handshake(uint16_t port, const std::map<std::string, std::string>& replace = {}, const std::string& path = "/ws");
+  static std::string handshake(uint16_t port, const std::map<std::string, std::string>& replace = {},
+                               const std::string& path = "/ws");
   /// Status of the answer to a handshake; 101 when the socket is open.
   int upgrade(uint16_t port, const std::map<std::string, std::string>& replace = {}, const std::string& path = "/ws");
 

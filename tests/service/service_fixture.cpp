@@ -16,7 +16,11 @@ protocol::TrafficRecorder& traffic() {
 
 TestService::TestService(const Options& options) {
   ServiceConfig config;
-  config.techniques = {{"fake", "Fake", "Draws stripes.", false, {{"depth", "how deep", "1", ParameterType::integer, 1, 8, 3, CostClass::regather}}}};
+  config.techniques = {{"fake",
+                        "Fake",
+                        "Draws stripes.",
+                        false,
+                        {{"depth", "how deep", "1", ParameterType::integer, 1, 8, 3, CostClass::regather}}}};
   config.layers = {"beauty", "albedo"};
   config.stages = {"trace", "resolve"};
   config.assetRoot = std::filesystem::temp_directory_path();
@@ -63,7 +67,8 @@ void TestService::waitForMetric(const std::string& name, double value) const {
   ADD_FAILURE() << name << " never became " << value << ", it is " << metric(name);
 }
 
-protocol::ServerHello TestClient::greet(std::optional<bool> watch, std::optional<std::vector<protocol::Encoding>> encodings) {
+protocol::ServerHello TestClient::greet(std::optional<bool> watch,
+                                        std::optional<std::vector<protocol::Encoding>> encodings) {
   protocol::ClientHello hello;
   hello.seq = nextSeq();
   hello.version = protocol::kVersion;
@@ -109,7 +114,8 @@ bool TestClient::step() {
     if (decoded.ok()) text = *decoded;
     return true;
   }
-  const std::span<const uint8_t> bytes(reinterpret_cast<const uint8_t*>(message->payload.data()), message->payload.size());
+  const std::span<const uint8_t> bytes(reinterpret_cast<const uint8_t*>(message->payload.data()),
+                                       message->payload.size());
   const Result<void> valid = traffic().frame(bytes);
   EXPECT_TRUE(valid.ok()) << valid.error().text();
   const auto frame = protocol::decodeFrame(bytes);
@@ -129,7 +135,8 @@ TestClient::Picture TestClient::awaitPicture(const std::function<bool(const prot
   return {};
 }
 
-std::vector<uint8_t> decodeImage(const std::vector<uint8_t>& bytes, protocol::Encoding encoding, uint32_t& width, uint32_t& height) {
+std::vector<uint8_t> decodeImage(const std::vector<uint8_t>& bytes, protocol::Encoding encoding, uint32_t& width,
+                                 uint32_t& height) {
   std::vector<uint8_t> rgb;
   if (encoding == protocol::Encoding::png) {
     png_image image{};

@@ -79,7 +79,9 @@ class TestClient {
   /// The answer of this kind to a seq.
   template <class T>
   T awaitReply(uint32_t seq) { return await<T>([seq](const T& m) { return m.seq == seq; }); }
-  Picture awaitPicture(const std::function<bool(const protocol::FrameHeader&)>& wanted = [](const auto&) { return true; });
+  Picture awaitPicture(const std::function<bool(const protocol::FrameHeader&)>& wanted = [](const auto&) {
+    return true;
+  });
 
   /// Reads one message into `text` or `picture`; false at the end of the connection.
   bool step();
@@ -96,7 +98,8 @@ class TestClient {
 };
 
 /// 8-bit RGB of a PNG or JPEG, width*height*3.
-std::vector<uint8_t> decodeImage(const std::vector<uint8_t>& bytes, protocol::Encoding encoding, uint32_t& width, uint32_t& height);
+std::vector<uint8_t> decodeImage(const std::vector<uint8_t>& bytes, protocol::Encoding encoding, uint32_t& width,
+                                 uint32_t& height);
 
 /// "#/materials/0/roughness = value" as a message.
 protocol::SetMessage setRoughness(uint32_t seq, uint32_t material, float roughness);
