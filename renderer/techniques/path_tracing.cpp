@@ -14,13 +14,18 @@
 namespace limn {
 namespace {
 
-constexpr uint32_t kWorkgroup = 64;
+constexpr uint32_t kWorkgroup = 64, kDealt = 8;  // of path_tracing.comp
 constexpr double kInitialPathsPerSecond = 2e5;  // of a slow two-core machine; the first quanta correct it
 
 /// Samples a pixel takes in a pass: one while a first picture is wanted, then enough to keep vectors busy across path ends.
 /// No more: Mesa 22.3's software device silently ends every loop of an invocation after 65,535 turns of all of them together
 /// (measured), and four paths through a large scene may take a fifth of that.
 uint32_t samplesOfPass(uint32_t pass) { return pass < 2 ? 1 : pass < 3 ? 2 : 4; }
+
+uint32_t workgroups(uint32_t entries) {
+  const uint32_t turns = (entries + kWorkgroup * kDealt - 1) / (kWorkgroup * kDealt);
+  return turns * kDealt;
+}
 
 class PathTracing final : public Technique {
  public:
@@ -178,7 +183,7 @@ Result<void> PathTracing::dispatch(const TechniqueContext& context, uint32_t cou
   const auto all = bindings(context, adaptive ? m_active : m_order);
   const double begin = nowSeconds();
   auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
-    (m_useGeneral ? m_general : m_tailored).record(r, all, push, (count + kWorkgroup - 1) / kWorkgroup);
+    (m_useGeneral ? m_general : m_tailored).record(r, all, push, workgroups(count));
   });
   if (!done) return done;
   m_rate.measured(uint64_t(count) * m_passSamples, nowSeconds() - begin);

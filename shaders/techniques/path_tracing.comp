@@ -12,6 +12,7 @@
 #include "shaders/lib/camera.glsl"
 #include "shaders/lib/alpha.glsl"
 #define LIMN_ALPHA
+#define LIMN_ALPHA_ENABLED kUseAlpha
 #include "shaders/lib/trace.glsl"
 
 layout(local_size_x = 64) in;
@@ -77,7 +78,7 @@ bool occluded(Surface s, LightSample light, uint alphaState) {
 void addLights(inout Path p, Bsdf bsdf, vec3 woW) {
   vec2 choice = next2D(p.sampler_), u = next2D(p.sampler_);
   if (bsdf.shares.diffuse <= 0.0 && isMirror(bsdf.s.alpha) && bsdf.s.clearcoat <= 0.0) return;
-  LightSample light = sampleLight(bsdf.s.posR, choice.x, u);
+  LightSample light = sampleLight(bsdf.s.posR, choice, u);
   if (!(maxComponent(light.radiance) > 0.0)) return;
   float bsdfPdf;
   vec3 value = evaluateBsdf(bsdf, woW, light.dirW, bsdfPdf);
@@ -137,8 +138,17 @@ bool advance(inout Path p) {
 
 bool acceptable(FilmSample s) { return isFinite(s.radiance) && all(greaterThanEqual(s.radiance, vec3(0.0))); }
 
+// Software devices give each of their threads one run of workgroups; dealt out in turn, cheap and dear parts of the picture
+// share the threads evenly. The number of workgroups is a multiple of kDealt.
+uint dealtEntry() {
+  const uint kDealt = 8u;
+  uint each = gl_NumWorkGroups.x / kDealt;
+  uint group = (gl_WorkGroupID.x % each) * kDealt + gl_WorkGroupID.x / each;
+  return group * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+}
+
 void main() {
-  uint entry = gl_GlobalInvocationID.x;
+  uint entry = dealtEntry();
   uint discarded = 0u;
   if (entry < push.entryCount) {
     uint pixel = pixelList[push.firstEntry + entry];
