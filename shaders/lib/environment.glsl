@@ -44,24 +44,18 @@ float environmentPdf(vec3 dirW) {
   return cellPdf(y * sceneInfo.distributionWidth + x);
 }
 
-vec3 sampleEnvironment(vec2 u, out float pdf) {
+// `uAlias` decides between a cell and its alias: the digits that a table of 512 x 256 cells leaves to u.x are too few for that.
+vec3 sampleEnvironment(vec2 u, float uAlias, out float pdf) {
   if (!kUseEnvironmentImage || sceneInfo.distributionWidth == 0u) {
     pdf = 0.25 * kInvPi;
     return sampleSphere(u);
   }
-  // One cell by the alias table; the first number's leftover digits place the point in the cell.
   float cells = float(sceneInfo.distributionWidth * sceneInfo.distributionHeight);
   float scaled = min(u.x * cells, cells - 0.5);
   uint cell = uint(scaled);
   float share = scaled - float(cell);
   uvec4 entry = texelFetch(environmentTable, int(cell));
-  float keep = uintBitsToFloat(entry.x);
-  if (share >= keep) {
-    share = (share - keep) / max(1.0 - keep, 1e-6);
-    cell = entry.y;
-  } else {
-    share /= max(keep, 1e-6);
-  }
+  if (uAlias >= uintBitsToFloat(entry.x)) cell = entry.y;
   pdf = cellPdf(cell);
   uint x = cell % sceneInfo.distributionWidth, y = cell / sceneInfo.distributionWidth;
   float uu = (float(x) + clamp(share, 0.0, 0.999999)) / float(sceneInfo.distributionWidth);

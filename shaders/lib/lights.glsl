@@ -11,10 +11,14 @@ struct LightSample {
   float pdf;       // per unit solid angle, with the choice of the light; 0 for delta lights
 };
 
-uint chooseLight(float u) {
-  float scaled = u * float(sceneInfo.lightCount);
-  uint i = min(uint(scaled), sceneInfo.lightCount - 1u);
-  return (scaled - float(i)) < lights[i].aliasShare ? i : lights[i].alias;
+// The first number finds an entry of the alias table, the second decides between it and its alias; what is left of the second
+// is uniform again.
+uint chooseLight(inout vec2 u) {
+  uint i = min(uint(u.x * float(sceneInfo.lightCount)), sceneInfo.lightCount - 1u);
+  float share = lights[i].aliasShare;
+  bool keep = u.y < share;
+  u.y = min(keep ? u.y / share : (u.y - share) / (1.0 - share), 0.99999994);
+  return keep ? i : lights[i].alias;
 }
 
 float spotRamp(LightData light, vec3 dirToLight) {
@@ -64,13 +68,13 @@ LightSample sampleTriangleLight(LightData light, vec3 p, vec2 u) {
   return s;
 }
 
-LightSample sampleLight(vec3 p, float uLight, vec2 u) {
+LightSample sampleLight(vec3 p, vec2 choice, vec2 u) {
   LightSample s = LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0);
   if (sceneInfo.lightCount == 0u) return s;
-  LightData light = lights[chooseLight(uLight)];
+  LightData light = lights[chooseLight(choice)];
   if (kUseTriangleLights && light.type == kLightTriangle) return sampleTriangleLight(light, p, u);
   if (kUseEnvironment && light.type == kLightEnvironment) {
-    s.dirW = sampleEnvironment(u, s.pdf);
+    s.dirW = sampleEnvironment(u, choice.y, s.pdf);
     s.pdf *= light.probability;
     s.distance = kInfinity;
     s.radiance = s.pdf > 0.0 ? environmentRadiance(s.dirW) / s.pdf : vec3(0.0);
