@@ -59,18 +59,22 @@ Result<void> RenderThread::finish() {
   return m_outcome;
 }
 
+Result<void> RenderThread::serve(Session& session, StatusQueue& replies, const Callbacks& callbacks) {
+  // The first client's hello names the device: the status must be there before anybody is let in.
+  Result<Status> status = session.status();
+  if (!status) return status.error();
+  replies.setStatus(status.take());
+  callbacks.ready();
+  return session.run();
+}
+
 void RenderThread::run(const DaemonOptions& options, FrameSlot& frames, StatusQueue& replies) {
   Result<std::unique_ptr<vk::Device>> device = openDevice(options);
   m_openedPromise.set_value(device ? Result<void>() : Result<void>(device.error()));
   const Callbacks callbacks = m_start.get();
   if (device && !m_mailbox.closed()) {
     Result<std::unique_ptr<Session>> session = makeSession(**device, options, m_mailbox, frames, replies);
-    if (session) {
-      callbacks.ready();
-      m_outcome = (*session)->run();
-    } else {
-      m_outcome = session.error();
-    }
+    m_outcome = session ? serve(**session, replies, callbacks) : Result<void>(session.error());
   }
   if (!m_outcome) replies.push(ErrorReply{{}, m_outcome.error()});
   callbacks.ended();

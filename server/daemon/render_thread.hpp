@@ -7,6 +7,8 @@
 #include "renderer/session/mailbox.hpp"
 #include "server/daemon/daemon_options.hpp"
 
+namespace limn { class Session; }
+
 namespace limn::server {
 
 /// The thread that owns device, scene and session. It meets the others in the three boxes only.
@@ -28,6 +30,7 @@ class RenderThread {
 
  private:
   struct Callbacks { std::function<void()> ready, ended; };
+  static Result<void> serve(Session& session, StatusQueue& replies, const Callbacks& callbacks);
   void run(const DaemonOptions& options, FrameSlot& frames, StatusQueue& replies);
 
   Mailbox& m_mailbox;
