@@ -40,7 +40,8 @@ TEST(Furnace, WhiteMetalShowsTheSingleScatteringAlbedo) {
     }
 }
 
-TEST(Furnace, AnyWhiteDielectricStaysBelowOne) {
+/// glTF mixes the layers by Fresnel's factor of the half vector, which keeps the balance near the normal only (bsdf_laws_test.cpp).
+TEST(Furnace, WhiteDielectricStaysBelowOneNearTheNormal) {
   for (const float roughness : {0.0f, 0.3f, 0.6f, 1.0f}) {
     SceneBuilder b;
     Material m;
@@ -48,12 +49,10 @@ TEST(Furnace, AnyWhiteDielectricStaysBelowOne) {
     m.roughness = roughness;
     floorOf(b, b.material(m), 10);
     surround(b, 1);
-    for (const double cosine : {0.95, 0.5, 0.1}) {
-      lookParallel(b, {0, cosine, std::sqrt(1 - cosine * cosine)}, {0, 0, 0}, 0.1f);
-      const Measured mean = measure(render(b));
-      EXPECT_LE(mean.mean, 1.0 + 3 * mean.error) << "roughness " << roughness << ", cosine " << cosine;
-      EXPECT_GE(mean.mean, 0.75) << "roughness " << roughness << ", cosine " << cosine;
-    }
+    lookParallel(b, {0, 0.95, std::sqrt(1 - 0.95 * 0.95)}, {0, 0, 0}, 0.1f);
+    const Measured mean = measure(render(b));
+    EXPECT_LE(mean.mean, 1.0 + 3 * mean.error) << "roughness " << roughness;
+    EXPECT_GE(mean.mean, 0.93) << "roughness " << roughness;
   }
 }
 
