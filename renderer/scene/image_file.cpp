@@ -23,9 +23,22 @@ Result<ImageHeader> checked(ImageHeader header) {
   return header;
 }
 
+/// Whether the chunks fit into the file up to IEND. OpenImageIO leaks memory when libpng meets the end of the file.
+bool pngIsWhole(std::span<const uint8_t> b) {
+  for (size_t at = 8; b.size() - at >= 12;) {
+    const size_t length = bigEndian(b.data() + at, 4);
+    if (length > b.size() - at - 12) return false;
+    if (std::memcmp(b.data() + at + 4, "IEND", 4) == 0) return true;
+    at += 12 + length;
+  }
+  return false;
+}
+
 Result<ImageHeader> pngHeader(std::span<const uint8_t> b) {
-  if (b.size() < 33 || std::memcmp(b.data() + 12, "IHDR", 4) != 0)
+  if (b.size() < 33 || std::memcmp(b.data() + 12, "IHDR", 4) != 0) {
     return Error{"bad-file", "the PNG has no header", ""};
+  }
+  if (!pngIsWhole(b)) return Error{"bad-file", "the PNG is cut off", ""};
   return checked({ImageHeader::Format::png, bigEndian(b.data() + 16, 4), bigEndian(b.data() + 20, 4), b[24] == 16});
 }
 

@@ -217,6 +217,16 @@ TEST(GltfImage, SixteenBitsBecomeEightAndAreNoted) {
   EXPECT_TRUE(hasNote(loaded.report, "1 16-bit images"));
 }
 
+TEST(GltfImage, CutPngsNeverReachTheDecoder) {
+  const std::vector<uint8_t> whole = pngBytes(4, 2, 3);
+  ASSERT_TRUE(readImageHeader(whole).ok());
+  for (size_t length = 8; length < whole.size(); ++length) {
+    const auto header = readImageHeader(std::span(whole).first(length));
+    ASSERT_FALSE(header.ok()) << length;
+    EXPECT_EQ(header.error().code, "bad-file") << length;
+  }
+}
+
 TEST(GltfImage, Jpeg) {
   const std::vector<uint8_t> grey(8 * 8 * 3, 128);
   const std::vector<uint8_t> bytes =
