@@ -59,10 +59,13 @@ LightSample sampleTriangleLight(LightData light, vec3 p, vec2 u) {
   LightSample s = LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0);
   if (!(d > 0.0)) return s;
   s.dirW = toLight / d;
-  s.distance = d * (1.0 - 2e-5);  // the shadow ray stops short of the emitter itself, by more than its hit distance is rounded
   float scale = max(maxComponent(abs(e1)), maxComponent(abs(e2)));
   float cosLight = abs(dot(normalize(cross(e1 / scale, e2 / scale)), s.dirW));
   if (!(cosLight > 1e-7)) return s;
+  // The shadow ray stops short of the emitter itself, by more than its hit is rounded: in proportion to the distance, and by the
+  // corners' own digits across its plane.
+  float rounding = (maxComponent(abs(p0)) + scale) * (8.0 / 16777216.0);
+  s.distance = d * (1.0 - 2e-5) - min(rounding / cosLight, 0.1 * d);
   s.pdf = triangleLightPdf(light, d, cosLight);
   s.radiance = triangleEmission(light.triangle, barycentrics) / s.pdf;
   return s;

@@ -69,10 +69,21 @@ void addEmission(inout Path p, Surface s, Hit hit) {
 
 uint traceCount = 0u;
 
+// The ray aims at the light's point from where it starts: a parallel one would meet a near emitter before its end.
 bool occluded(Surface s, LightSample light, uint alphaState) {
   vec3 origin = offsetOrigin(s.posR, s.geometricNormal, light.dirW, s.extent);
+  bool near = light.distance < kInfinity;
+  vec3 way = near ? s.posR - origin + light.dirW * light.distance : light.dirW;
   ++traceCount;
-  return traceAny(origin, light.dirW, light.distance, alphaState);
+  return traceAny(origin, way, near ? 1.0 : kInfinity, alphaState);
+}
+
+// What the medium between the surface and the light lets pass.
+vec3 transmittance(Path p, Bsdf f, LightSample light) {
+  if (!kUseTransmission) return vec3(1.0);
+  bool sameSide = f.thin || dot(f.s.geometricNormal, light.dirW) > 0.0;
+  vec3 absorption = sameSide ? p.absorption : f.s.frontFace ? materials[f.s.material].absorption : vec3(0.0);
+  return exp(-absorption * light.distance);
 }
 
 void addLights(inout Path p, Bsdf bsdf, vec3 woW) {
@@ -85,7 +96,7 @@ void addLights(inout Path p, Bsdf bsdf, vec3 woW) {
   if (!(maxComponent(value) > 0.0)) return;
   if (occluded(bsdf.s, light, hashCombine(p.sampler_.key, p.sampler_.index ^ (p.bounce << 24)))) return;
   float weight = light.pdf > 0.0 ? powerHeuristic(light.pdf, bsdfPdf) : 1.0;
-  addRadiance(p, p.throughput * value * light.radiance * weight, p.bounce + 1u);
+  addRadiance(p, p.throughput * value * light.radiance * transmittance(p, bsdf, light) * weight, p.bounce + 1u);
 }
 
 // Moves the path by one ray. False when it ended.
