@@ -102,6 +102,7 @@ Measured measure(const FilmImage& image, const std::string& layer) {
 }
 
 double zScore(const Measured& measured, double expected) {
+  if (measured.mean == expected) return 0.0;
   return (measured.mean - expected) / std::sqrt(measured.error * measured.error + 1e-8 * expected * expected);
 }
 
