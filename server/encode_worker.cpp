@@ -3,6 +3,7 @@
 #include "protocol/frame.hpp"
 #include "renderer/base/clock.hpp"
 #include "renderer/base/log.hpp"
+#include "renderer/base/thread_name.hpp"
 
 namespace limn::server {
 namespace {
@@ -58,6 +59,7 @@ uint64_t EncodeWorker::failures() const {
 }
 
 void EncodeWorker::run() {
+  nameThread("limn-encode");
   std::unique_lock lock(m_mutex);
   while (true) {
     m_work.wait(lock, [this] { return m_stop || !m_keys.empty(); });

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <new>
 
+#include "renderer/base/thread_name.hpp"
+
 namespace limn::server {
 
 namespace fs = std::filesystem;
@@ -64,6 +66,7 @@ Result<LoadedScene> LoaderWorker::read(const Job& job) const {
 }
 
 void LoaderWorker::run() {
+  nameThread("limn-load");
   std::unique_lock lock(m_mutex);
   while (true) {
     m_work.wait(lock, [this] { return m_stop || !m_waiting.empty(); });

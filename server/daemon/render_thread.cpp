@@ -4,6 +4,7 @@
 
 #include "renderer/base/clock.hpp"
 #include "renderer/base/log.hpp"
+#include "renderer/base/thread_name.hpp"
 #include "renderer/scene/gltf_loader.hpp"
 #include "renderer/session/session.hpp"
 #include "renderer/vk/device.hpp"
@@ -69,6 +70,7 @@ Result<void> RenderThread::serve(Session& session, StatusQueue& replies, const C
 }
 
 void RenderThread::run(const DaemonOptions& options, FrameSlot& frames, StatusQueue& replies) {
+  nameThread("limn-render");
   Result<std::unique_ptr<vk::Device>> device = openDevice(options);
   m_openedPromise.set_value(device ? Result<void>() : Result<void>(device.error()));
   const Callbacks callbacks = m_start.get();

@@ -18,6 +18,7 @@ class ChildProcess {
   /// The next line of standard output; empty at its end.
   std::string readLine();
   void signal(int number) const;
+  pid_t pid() const { return m_pid; }
   /// Waits for the end; the exit status, or minus the number of the signal that ended it.
   int wait();
   /// Everything it wrote to standard error; after wait().
