@@ -53,7 +53,7 @@ vec3 sampleEnvironment(vec2 u, float uAlias, out float pdf) {
   float cells = float(sceneInfo.distributionWidth * sceneInfo.distributionHeight);
   float scaled = min(u.x * cells, cells - 0.5);
   uint cell = uint(scaled);
-  float share = scaled - float(cell);
+  float share = scaled - float(cell) + cells * (0.5 / 16777216.0);  // the middle of u.x's last digit, off the cell's border
   uvec4 entry = texelFetch(environmentTable, int(cell));
   if (uAlias >= uintBitsToFloat(entry.x)) cell = entry.y;
   pdf = cellPdf(cell);
