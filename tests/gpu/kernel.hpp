@@ -21,7 +21,9 @@ vk::Buffer inputOf(const std::vector<T>& values) {
   return must(vk::createBufferWith(SharedDevice::get(), kernelBuffer("input"), std::span<const T>(values)));
 }
 
-/// Runs a kernel once over `groups` workgroups, its results in binding 0, and gives `count` of them. A kernel is compiled the
+constexpr uint32_t kOutputBinding = 30;  ///< beyond those of bindings.h
+
+/// Runs a kernel once over `groups` workgroups, its results in binding kOutputBinding, and gives `count` of them. A kernel is compiled the
 /// first time; its layout is that of the first bindings it sees.
 template <class T, class Push>
 std::vector<T> runKernel(std::span<const uint32_t> spirv, std::vector<vk::Binding> bindings, const Push& push, size_t count,
@@ -29,7 +31,7 @@ std::vector<T> runKernel(std::span<const uint32_t> spirv, std::vector<vk::Bindin
   static std::map<const uint32_t*, vk::ComputePipeline> pipelines;
   vk::Device& device = SharedDevice::get();
   const vk::Buffer out = must(vk::Buffer::create(device, kernelBuffer("output", count * sizeof(T))));
-  bindings.push_back(vk::storage(0, out));
+  bindings.push_back(vk::storage(kOutputBinding, out));
   vk::ComputePipeline& pipeline = pipelines[spirv.data()];
   if (!pipeline) {
     if (pipelines.size() == 1) SharedDevice::atEnd([] { pipelines.clear(); });

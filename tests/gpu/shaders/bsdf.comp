@@ -8,7 +8,7 @@
 #include "tests/gpu/shaders/bsdf_cases.h"
 
 layout(local_size_x = 64) in;
-layout(binding = 0, scalar) buffer Out { vec4 result[]; };
+layout(binding = 30, scalar) buffer Out { vec4 result[]; };
 layout(binding = 1, scalar) readonly buffer Cases { BsdfCase case_; };
 layout(push_constant, scalar) uniform Push { BsdfPush push; };
 

@@ -7,7 +7,7 @@
 #include "tests/gpu/shaders/samplers.h"
 
 layout(local_size_x = 64) in;
-layout(binding = 0, scalar) buffer Out { vec4 result[]; };
+layout(binding = 30, scalar) buffer Out { vec4 result[]; };
 layout(push_constant, scalar) uniform Push { SamplersPush push; };
 
 vec2 randomPair(uint i) {
