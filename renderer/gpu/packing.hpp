@@ -6,7 +6,7 @@
 
 namespace limn::gpu {
 
-/// Unit vector to 2x16-bit octahedral coordinates; shaders/lib/math.glsl decodes. Error below 6e-5 rad.
+/// Unit vector to 2x16-bit octahedral coordinates; shaders/lib/math.glsl decodes. Error below 7e-5 rad.
 inline uint32_t octEncode(glm::vec3 n) {
   n /= std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
   glm::vec2 e(n.x, n.y);
