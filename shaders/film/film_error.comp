@@ -11,6 +11,19 @@ layout(push_constant, scalar) uniform Push { SelectPush push; };
 
 shared vec4 partial[256];
 
+// A pixel that one bright path has lifted would hide its own error behind its own mean; its eight neighbours know better.
+vec3 neighbourMean(ivec2 p) {
+  vec3 sum = vec3(0.0);
+  float count = 0.0;
+  for (int k = 0; k < 9; ++k) {
+    ivec2 q = p + ivec2(k % 3 - 1, k / 3 - 1);
+    if (k == 4 || q.x < 0 || q.y < 0 || q.x >= int(push.width) || q.y >= int(push.height)) continue;
+    sum += filmMean[uint(q.y) * push.width + uint(q.x)].rgb;
+    count += 1.0;
+  }
+  return sum / count;
+}
+
 void main() {
   uvec2 p = gl_GlobalInvocationID.xy;
   vec4 own = vec4(0.0);
@@ -25,7 +38,8 @@ void main() {
         vec3 even = filmHalf[pixel].rgb;
         vec3 odd = (mean.rgb * mean.w - even * evenCount) / oddCount;
         vec3 e = (even - odd) * (sqrt(evenCount * oddCount) / mean.w);
-        vec3 relative = e * e / (mean.rgb * mean.rgb + 0.01 * push.meanLuminance * push.meanLuminance + 1e-30);
+        vec3 level = min(mean.rgb, 2.0 * neighbourMean(ivec2(p)));
+        vec3 relative = e * e / (level * level + 0.01 * push.meanLuminance * push.meanLuminance + 1e-30);
         own.y = (relative.r + relative.g + relative.b) * (1.0 / 3.0);
         own.z = 1.0;
       }
