@@ -193,7 +193,7 @@ BsdfSample sampleBsdf(Bsdf f, vec3 woW, float uLobe, vec2 u) {
     vec3 h = mirror ? vec3(0.0, 0.0, 1.0) : sampleVisibleNormal(wo, f.s.alpha, u);
     BsdfSample delta = sampleTransmission(f, woW, h, mirror, dirW);
     if (mirror || dirW == vec3(0.0)) return delta;
-  } else if (kUseClearcoat) {
+  } else if (kUseClearcoat && f.shares.clearcoat > 0.0) {  // shares that round to less than 1 leave a gap that is no coat's
     vec3 n = f.s.clearcoatNormal;
     if (isMirror(f.s.clearcoatAlpha)) {
       float cosO = dot(n, woW);
