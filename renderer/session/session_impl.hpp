@@ -99,6 +99,7 @@ struct Session::Impl {
   uint64_t raysAtRestart = 0;
   double sampledSeconds = 0.0;          ///< device time since the restart
   double sampledAtFrame = 0.0;          ///< of which the last picture knew
+  uint32_t publishedPasses = 0;         ///< of the last picture of this state
   bool frameOfState = false;            ///< a picture of the present state was published
   bool showAgain = false;               ///< the display settings changed
   bool newSamples = false;              ///< since the last publication

@@ -19,6 +19,7 @@ bool Session::Impl::frameIsDue(double now) const {
                                                                           gridComplete());
   if (showAgain || progress.converged) return newSamples || showAgain;
   if (!newSamples) return false;
+  if (progress.passes > 0 && publishedPasses == 0) return true;  // the first picture without a filled pixel
   const double wait = std::clamp(0.25 * (now - restartedAt), config.frameSeconds, 10.0 * config.frameSeconds);
   return now - publishedAt >= wait;
 }
@@ -41,6 +42,7 @@ Result<void> Session::Impl::publish() {
   auto frame = makeFrame();
   if (!frame) return frame.error();
   publishedAt = nowSeconds();
+  publishedPasses = progress.passes;
   frameOfState = true;
   showAgain = newSamples = false;
   ++status.framesPublished;

@@ -164,6 +164,7 @@ Result<void> Session::Impl::restartFilm(CostClass cost) {
   raysAtRestart = technique->raysTraced();
   sampledSeconds = sampledAtFrame = 0.0;
   frameOfState = newSamples = false;
+  publishedPasses = 0;
   ++status.restarts;
   return {};
 }
