@@ -44,7 +44,8 @@ float environmentPdf(vec3 dirW) {
   return cellPdf(y * sceneInfo.distributionWidth + x);
 }
 
-// `uAlias` decides between a cell and its alias: the digits that a table of 512 x 256 cells leaves to u.x are too few for that.
+// `uAlias` decides between a cell and its alias: the digits that a table of 512 x 256 cells leaves to u.x are too few
+// for that.
 vec3 sampleEnvironment(vec2 u, float uAlias, out float pdf) {
   if (!kUseEnvironmentImage || sceneInfo.distributionWidth == 0u) {
     pdf = 0.25 * kInvPi;
@@ -53,7 +54,8 @@ vec3 sampleEnvironment(vec2 u, float uAlias, out float pdf) {
   float cells = float(sceneInfo.distributionWidth * sceneInfo.distributionHeight);
   float scaled = min(u.x * cells, cells - 0.5);
   uint cell = uint(scaled);
-  float share = scaled - float(cell) + cells * (0.5 / 16777216.0);  // the middle of u.x's last digit, off the cell's border
+  float share =
+      scaled - float(cell) + cells * (0.5 / 16777216.0);  // the middle of u.x's last digit, off the cell's border
   uvec4 entry = texelFetch(environmentTable, int(cell));
   if (uAlias >= uintBitsToFloat(entry.x)) cell = entry.y;
   pdf = cellPdf(cell);

@@ -11,8 +11,8 @@ struct LightSample {
   float pdf;       // per unit solid angle, with the choice of the light; 0 for delta lights
 };
 
-// The first number finds an entry of the alias table, the second decides between it and its alias; what is left of the second
-// is uniform again.
+// The first number finds an entry of the alias table, the second decides between it and its alias; what is left of the
+// second is uniform again.
 uint chooseLight(inout vec2 u) {
   uint i = min(uint(u.x * float(sceneInfo.lightCount)), sceneInfo.lightCount - 1u);
   float share = lights[i].aliasShare;
@@ -62,8 +62,8 @@ LightSample sampleTriangleLight(LightData light, vec3 p, vec2 u) {
   float scale = max(maxComponent(abs(e1)), maxComponent(abs(e2)));
   float cosLight = abs(dot(normalize(cross(e1 / scale, e2 / scale)), s.dirW));
   if (!(cosLight > 1e-7)) return s;
-  // The shadow ray stops short of the emitter itself, by more than its hit is rounded: in proportion to the distance, and by the
-  // corners' own digits across its plane.
+  // The shadow ray stops short of the emitter itself, by more than its hit is rounded: in proportion to the distance,
+  // and by the corners' own digits across its plane.
   float rounding = (maxComponent(abs(p0)) + scale) * (8.0 / 16777216.0);
   s.distance = d * (1.0 - 2e-5) - min(rounding / cosLight, 0.1 * d);
   s.pdf = triangleLightPdf(light, d, cosLight);

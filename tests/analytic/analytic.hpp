@@ -25,8 +25,8 @@ inline FilmImage render(const SceneBuilder& builder, const RenderOptions& option
   return tracer->render(builder.scene, options);
 }
 
-/// The picture's mean is `expected` by a z-test, and within `relative` of it: stratified samples err less than they know.
-/// `model` is a relative error that the scene itself makes, such as a tessellation's.
+/// The picture's mean is `expected` by a z-test, and within `relative` of it: stratified samples err less than they
+/// know. `model` is a relative error that the scene itself makes, such as a tessellation's.
 inline void expectMean(const FilmImage& image, double expected, double relative = 0.01, double model = 0.0,
                        const std::string& layer = "beauty") {
   Measured m = measure(image, layer);
@@ -37,7 +37,8 @@ inline void expectMean(const FilmImage& image, double expected, double relative 
 }
 
 /// All rays parallel and within `halfHeight` of the axis: a picture of one point under one direction.
-inline void lookParallel(SceneBuilder& b, glm::dvec3 eye, glm::dvec3 target, float halfHeight, glm::dvec3 up = {0, 1, 0}) {
+inline void lookParallel(SceneBuilder& b, glm::dvec3 eye, glm::dvec3 target, float halfHeight,
+                         glm::dvec3 up = {0, 1, 0}) {
   b.look(eye, target, 0.5f, up);
   b.scene.view.lens.perspective = false;
   b.scene.view.lens.ymag = halfHeight;

@@ -6,7 +6,8 @@ namespace {
 void surround(SceneBuilder& b, float radiance) { b.scene.environment.radiance = glm::vec3(radiance); }
 
 /// A constant image as the environment, which takes the way through the importance table.
-void surroundByImage(SceneBuilder& b, uint32_t width, uint32_t height, const std::function<float(uint32_t, uint32_t)>& radiance) {
+void surroundByImage(SceneBuilder& b, uint32_t width, uint32_t height,
+                     const std::function<float(uint32_t, uint32_t)>& radiance) {
   Image image;
   image.width = width;
   image.height = height;
@@ -40,7 +41,8 @@ TEST(Furnace, WhiteMetalShowsTheSingleScatteringAlbedo) {
     }
 }
 
-/// glTF mixes the layers by Fresnel's factor of the half vector, which keeps the balance near the normal only (bsdf_laws_test.cpp).
+/// glTF mixes the layers by Fresnel's factor of the half vector, which keeps the balance near the normal only
+/// (bsdf_laws_test.cpp).
 TEST(Furnace, WhiteDielectricStaysBelowOneNearTheNormal) {
   for (const float roughness : {0.0f, 0.3f, 0.6f, 1.0f}) {
     SceneBuilder b;

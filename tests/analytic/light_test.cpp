@@ -78,12 +78,11 @@ struct AreaCase {
 };
 
 TEST(AreaLight, QuadHasThePolygonsFormFactor) {
-  const std::vector<AreaCase> cases{
-      {"Above", {{-0.5, 1, -0.5}, {0.5, 1, -0.5}, {0.5, 1, 0.5}, {-0.5, 1, 0.5}}},
-      {"Near", {{-1, 0.05, -1}, {1, 0.05, -1}, {1, 0.05, 1}, {-1, 0.05, 1}}},
-      {"Far", {{20, 30, -1}, {22, 30, -1}, {22, 31, 1}, {20, 31, 1}}},
-      {"Upright", {{-1, 0, -0.7}, {1, 0, -0.7}, {1, 1, -0.7}, {-1, 1, -0.7}}},
-      {"Needle", {{-3, 0.5, -0.6}, {3, 0.5, -0.6}, {3, 0.505, -0.6}, {-3, 0.505, -0.6}}}};
+  const std::vector<AreaCase> cases{{"Above", {{-0.5, 1, -0.5}, {0.5, 1, -0.5}, {0.5, 1, 0.5}, {-0.5, 1, 0.5}}},
+                                    {"Near", {{-1, 0.05, -1}, {1, 0.05, -1}, {1, 0.05, 1}, {-1, 0.05, 1}}},
+                                    {"Far", {{20, 30, -1}, {22, 30, -1}, {22, 31, 1}, {20, 31, 1}}},
+                                    {"Upright", {{-1, 0, -0.7}, {1, 0, -0.7}, {1, 1, -0.7}, {-1, 1, -0.7}}},
+                                    {"Needle", {{-3, 0.5, -0.6}, {3, 0.5, -0.6}, {3, 0.505, -0.6}, {-3, 0.505, -0.6}}}};
   for (const AreaCase& c : cases) {
     SCOPED_TRACE(c.name);
     SceneBuilder b = floorAtOrigin();
@@ -117,15 +116,16 @@ TEST(AreaLight, GlossyPlateSeesIt) {
       lookParallel(b, {-sine, cosine, 0}, {0, 0, 0}, 1e-4f);
       const glm::dvec3 center = distance * glm::dvec3(sine, cosine, 0.1);
       b.emitter(glm::vec3(2.0f));
-      shine(b, 1, {center + glm::dvec3(-0.2, 0, 0.2), center + glm::dvec3(0.2, 0, 0.2), center + glm::dvec3(0.2, 0, -0.2),
-                   center + glm::dvec3(-0.2, 0, -0.2)});
+      shine(b, 1,
+            {center + glm::dvec3(-0.2, 0, 0.2), center + glm::dvec3(0.2, 0, 0.2), center + glm::dvec3(0.2, 0, -0.2),
+             center + glm::dvec3(-0.2, 0, -0.2)});
       const Ggx ggx{roughness * roughness};
       const double expected = 2.0 * 0.16 * quadrature(800, [&](double u, double v) {
-        const glm::dvec3 to = center + glm::dvec3(0.4 * u - 0.2, 0, 0.4 * v - 0.2);
-        const double d2 = glm::dot(to, to);
-        const glm::dvec3 w = to / std::sqrt(d2);
-        return ggx.brdf({-sine, 0, cosine}, {w.x, w.z, w.y}) * w.y * w.y / d2;
-      });
+                                const glm::dvec3 to = center + glm::dvec3(0.4 * u - 0.2, 0, 0.4 * v - 0.2);
+                                const double d2 = glm::dot(to, to);
+                                const glm::dvec3 w = to / std::sqrt(d2);
+                                return ggx.brdf({-sine, 0, cosine}, {w.x, w.z, w.y}) * w.y * w.y / d2;
+                              });
       RenderOptions options;
       options.samples = 256;
       expectMean(render(b, options), expected, 0.01);
@@ -145,7 +145,8 @@ TEST(AreaLight, EmissiveTextureShinesWhereItIsWhite) {
     b.scene.images.push_back(halves);
     b.scene.materials[material].emissiveTexture.image = 0;
     b.scene.materials[material].emissiveTexture.nearest = true;
-    b.scene.materials[material].emissiveTexture.wrapS = b.scene.materials[material].emissiveTexture.wrapT = Wrap::clampToEdge;
+    b.scene.materials[material].emissiveTexture.wrapS = b.scene.materials[material].emissiveTexture.wrapT =
+        Wrap::clampToEdge;
     Primitive p;
     p.material = int32_t(material);
     p.positions = {{-1, 1, -1}, {1, 1, -1}, {1, 1, 1}, {-1, 1, 1}};

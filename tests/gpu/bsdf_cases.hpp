@@ -69,10 +69,11 @@ inline shared::BsdfCase coatedCase(float cosine, float alpha, float coatAlpha) {
   return c;
 }
 
-inline std::vector<glm::vec4> runBsdf(const shared::BsdfCase& c, uint32_t mode, uint32_t count, uint32_t vectors, uint32_t seed) {
+inline std::vector<glm::vec4> runBsdf(const shared::BsdfCase& c, uint32_t mode, uint32_t count, uint32_t vectors,
+                                      uint32_t seed) {
   const vk::Buffer in = inputOf<shared::BsdfCase>({c});
-  return runKernel<glm::vec4>(bsdfSpirv, {vk::storage(1, in)}, shared::BsdfPush{mode, count, seed}, size_t(count) * vectors,
-                              groupsFor(count));
+  return runKernel<glm::vec4>(bsdfSpirv, {vk::storage(1, in)}, shared::BsdfPush{mode, count, seed},
+                              size_t(count) * vectors, groupsFor(count));
 }
 
 struct BsdfDraw {

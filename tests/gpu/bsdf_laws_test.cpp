@@ -45,9 +45,9 @@ shared::BsdfCase blackUnder(shared::BsdfCase c) {
 
 constexpr float kDown = 0.0f;  ///< the least cosine of a family whose balance holds everywhere
 
-/// glTF mixes the diffuse layer with the specular one by Fresnel's factor of the half vector. [glTF 2.0, appendix B] That is
-/// reciprocal, but a white dielectric sends back up to 1.8 times what arrives at grazing angles: its balance is held near the
-/// normal, and that of each layer alone everywhere.
+/// glTF mixes the diffuse layer with the specular one by Fresnel's factor of the half vector. [glTF 2.0, appendix B]
+/// That is reciprocal, but a white dielectric sends back up to 1.8 times what arrives at grazing angles: its balance is
+/// held near the normal, and that of each layer alone everywhere.
 const std::vector<Family>& families() {
   static const std::vector<Family> kFamilies{
       {"Metal", metalCase, kDown},
@@ -87,7 +87,8 @@ TEST_P(Bsdfs, StayFiniteAtTheEdges) {
         c.ior = ior;
         int bad = 0;
         for (const BsdfDraw& d : drawBsdf(c, 512, 3)) {
-          for (int k = 0; k < 3; ++k) bad += !std::isfinite(d.weight[k]) || d.weight[k] < 0 || !std::isfinite(d.value[k]);
+          for (int k = 0; k < 3; ++k)
+            bad += !std::isfinite(d.weight[k]) || d.weight[k] < 0 || !std::isfinite(d.value[k]);
           bad += !std::isfinite(d.pdf) || d.pdf < 0 || (d.mirror() && d.pdf != 0);
           if (d.weight != glm::vec3(0)) bad += std::abs(glm::length(d.dirW) - 1) > 1e-4f;
         }
@@ -96,7 +97,8 @@ TEST_P(Bsdfs, StayFiniteAtTheEdges) {
 }
 
 TEST_P(Bsdfs, ReflectBothWaysAlike) {
-  if (GetParam().make(1.0f, 0.5f).clearcoat > 0.0f) return;  // the coat dims by the viewer's angle alone. [KHR_materials_clearcoat]
+  if (GetParam().make(1.0f, 0.5f).clearcoat > 0.0f)
+    return;  // the coat dims by the viewer's angle alone. [KHR_materials_clearcoat]
   for (const float alpha : {0.05f, 0.3f, 1.0f}) {
     shared::BsdfCase c = GetParam().make(0.5f, alpha);
     c.transmission = std::min(c.transmission, 0.5f);
@@ -131,7 +133,8 @@ TEST(Mirror, GlassSplitsLightAsFresnelSays) {
       const double eta = entering ? 1.5 : 1 / 1.5, sine2 = (1 - double(cosine) * cosine) / (eta * eta);
       double reflectance = 1.0;
       if (sine2 < 1.0) {
-        const double t = std::sqrt(1 - sine2), s = (cosine - eta * t) / (cosine + eta * t), p = (eta * cosine - t) / (eta * cosine + t);
+        const double t = std::sqrt(1 - sine2), s = (cosine - eta * t) / (cosine + eta * t),
+                     p = (eta * cosine - t) / (eta * cosine + t);
         reflectance = 0.5 * (s * s + p * p);
       }
       double reflected = 0.0, transmitted = 0.0;
@@ -139,13 +142,15 @@ TEST(Mirror, GlassSplitsLightAsFresnelSays) {
         if (d.weight.g == 0.0f) continue;
         ASSERT_TRUE(d.mirror());
         (d.transmitted() ? transmitted : reflected) += d.weight.g / kDraws;
-        const double sine = glm::length(glm::cross(d.dirW, c.normal)), incident = std::sqrt(1 - double(cosine) * cosine);
+        const double sine = glm::length(glm::cross(d.dirW, c.normal)),
+                     incident = std::sqrt(1 - double(cosine) * cosine);
         EXPECT_NEAR(sine, d.transmitted() ? incident / eta : incident, 2e-5);
       }
       // A lobe's weight is constant, so its sum errs as the binomial count of its draws.
       const double error = 4.0 / std::sqrt(double(kDraws));
       EXPECT_NEAR(reflected, reflectance, error * std::sqrt(reflectance) + 1e-4) << cosine << entering;
-      EXPECT_NEAR(transmitted * eta * eta, 1 - reflectance, error * std::sqrt(1 - reflectance) + 1e-4) << cosine << entering;
+      EXPECT_NEAR(transmitted * eta * eta, 1 - reflectance, error * std::sqrt(1 - reflectance) + 1e-4)
+          << cosine << entering;
     }
 }
 

@@ -40,8 +40,9 @@ SceneBuilder planeAt(const Place& place) {
 
 class Departure : public testing::TestWithParam<Place> {};
 INSTANTIATE_TEST_SUITE_P(Places, Departure,
-                         testing::Values(Place{1e-3, 0}, Place{1, 0}, Place{1e3, 0}, Place{1e6, 0}, Place{1e-3, 0.01}, Place{1e-3, 1e5},
-                                         Place{1, 10}, Place{1, 1e3}, Place{1, 1e5}, Place{1e3, 1e4}, Place{1e3, 1e5}, Place{1e6, 1e5}));
+                         testing::Values(Place{1e-3, 0}, Place{1, 0}, Place{1e3, 0}, Place{1e6, 0}, Place{1e-3, 0.01},
+                                         Place{1e-3, 1e5}, Place{1, 10}, Place{1, 1e3}, Place{1, 1e5}, Place{1e3, 1e4},
+                                         Place{1e3, 1e5}, Place{1e6, 1e5}));
 
 TEST_P(Departure, RaysNeverMeetTheirOwnPlane) {
   const SceneBuilder b = planeAt(GetParam());
@@ -61,9 +62,9 @@ TEST_P(Departure, RaysNeverMeetTheirOwnPlane) {
   constexpr uint32_t kRays = 1u << 15;
   const auto bindings = gpu::joined(mirror.bindings(), {vk::texel(BINDING_BVH_NODES, bvh.nodes()),
                                                         vk::texel(BINDING_BVH_TRIANGLES, bvh.triangles())});
-  const auto results = runKernel<uint32_t>(departureSpirv, bindings,
-                                           Push{uint32_t(mirror.triangleCount()), kRays, 3, float(2 * GetParam().scale)}, kRays,
-                                           groupsFor(kRays));
+  const auto results = runKernel<uint32_t>(
+      departureSpirv, bindings, Push{uint32_t(mirror.triangleCount()), kRays, 3, float(2 * GetParam().scale)}, kRays,
+      groupsFor(kRays));
   uint32_t hits = 0, strays = 0;
   for (const uint32_t r : results) {
     hits += r == 1;

@@ -13,8 +13,9 @@ namespace {
 
 std::vector<glm::vec4> evaluate(uint32_t formula, const std::vector<glm::vec4>& values) {
   const vk::Buffer in = inputOf(values);
-  return runKernel<glm::vec4>(formulasSpirv, {vk::storage(0, in)}, shared::FormulasPush{formula, uint32_t(values.size())},
-                              values.size(), groupsFor(values.size()));
+  return runKernel<glm::vec4>(formulasSpirv, {vk::storage(0, in)},
+                              shared::FormulasPush{formula, uint32_t(values.size())}, values.size(),
+                              groupsFor(values.size()));
 }
 
 /// Unit vectors everywhere, with those on axes, planes and octants' borders among them.
@@ -26,7 +27,8 @@ std::vector<glm::vec3> unitVectors() {
         if (x || y || z) list.push_back(glm::normalize(glm::vec3(x, y, z)));
   std::mt19937 engine(17);
   std::normal_distribution<float> normal;
-  for (int i = 0; i < 20000; ++i) list.push_back(glm::normalize(glm::vec3(normal(engine), normal(engine), normal(engine))));
+  for (int i = 0; i < 20000; ++i)
+    list.push_back(glm::normalize(glm::vec3(normal(engine), normal(engine), normal(engine))));
   for (const float tiny : {1e-3f, 1e-6f, -1e-6f}) list.push_back(glm::normalize(glm::vec3(tiny, -tiny, -1.0f)));
   return list;
 }
@@ -54,12 +56,14 @@ TEST(Formula, FramesAreOrthonormal) {
 }
 
 std::vector<glm::vec4> colours() {
-  std::vector<glm::vec4> list{{0, 0, 0, 0}, {1, 1, 1, 0}, {0.18f, 0.18f, 0.18f, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0},
-                              {0.08f, 0.08f, 0.08f, 0}, {0.76f, 0.76f, 0.76f, 0}, {0.8f, 0.4f, 0.0f, 0}, {1e4f, 1e4f, 1e4f, 0},
-                              {1e-4f, 2e-4f, 0, 0}};
+  std::vector<glm::vec4> list{
+      {0, 0, 0, 0},          {1, 1, 1, 0},          {0.18f, 0.18f, 0.18f, 0}, {1, 0, 0, 0},
+      {0, 1, 0, 0},          {0, 0, 1, 0},          {0.08f, 0.08f, 0.08f, 0}, {0.76f, 0.76f, 0.76f, 0},
+      {0.8f, 0.4f, 0.0f, 0}, {1e4f, 1e4f, 1e4f, 0}, {1e-4f, 2e-4f, 0, 0}};
   std::mt19937 engine(5);
   std::uniform_real_distribution<float> exponent(-10, 6);
-  for (int i = 0; i < 2000; ++i) list.push_back({std::exp2(exponent(engine)), std::exp2(exponent(engine)), std::exp2(exponent(engine)), 0});
+  for (int i = 0; i < 2000; ++i)
+    list.push_back({std::exp2(exponent(engine)), std::exp2(exponent(engine)), std::exp2(exponent(engine)), 0});
   return list;
 }
 
@@ -69,7 +73,8 @@ void expectClose(uint32_t formula, glm::dvec3 (*reference)(glm::dvec3)) {
   for (size_t i = 0; i < in.size(); ++i) {
     const glm::dvec3 expected = reference(glm::dvec3(in[i]));
     for (int k = 0; k < 3; ++k)
-      EXPECT_NEAR(out[i][k], expected[k], 1e-3) << "of " << in[i].x << ' ' << in[i].y << ' ' << in[i].z << ", channel " << k;
+      EXPECT_NEAR(out[i][k], expected[k], 1e-3)
+          << "of " << in[i].x << ' ' << in[i].y << ' ' << in[i].z << ", channel " << k;
   }
 }
 
@@ -91,7 +96,9 @@ glm::dvec3 neutral(glm::dvec3 c) {
 glm::dvec3 aces(glm::dvec3 c) {
   const glm::dvec3 v = rows({0.59719, 0.35458, 0.04823}, {0.07600, 0.90834, 0.01566}, {0.02840, 0.13383, 0.83777}) * c;
   const glm::dvec3 fit = (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081);
-  return glm::clamp(rows({1.60475, -0.53108, -0.07367}, {-0.10208, 1.10813, -0.00605}, {-0.00327, -0.07276, 1.07602}) * fit, 0.0, 1.0);
+  return glm::clamp(
+      rows({1.60475, -0.53108, -0.07367}, {-0.10208, 1.10813, -0.00605}, {-0.00327, -0.07276, 1.07602}) * fit, 0.0,
+      1.0);
 }
 
 // [T. Sobotka's AgX; the polynomial of B. Wrensch, "Minimal AgX Implementation"]
@@ -101,7 +108,8 @@ glm::dvec3 agx(glm::dvec3 c) {
                                 {0.0423756549057051, 0.0784336, 0.879142973793104});
   glm::dvec3 v = inset * c;
   for (int k = 0; k < 3; ++k) {
-    const double t = (std::clamp(std::log2(std::max(v[k], 1e-10)), -12.47393, 4.026069) + 12.47393) / (4.026069 + 12.47393);
+    const double t =
+        (std::clamp(std::log2(std::max(v[k], 1e-10)), -12.47393, 4.026069) + 12.47393) / (4.026069 + 12.47393);
     v[k] = ((((((15.5 * t - 40.14) * t + 31.96) * t - 6.868) * t + 0.4298) * t + 0.1191) * t) - 0.00232;
   }
   v = glm::clamp(glm::inverse(inset) * v, 0.0, 1.0);
@@ -117,7 +125,9 @@ glm::dvec3 srgb(glm::dvec3 c) {
   return c;
 }
 
-TEST(Formula, PbrNeutralIsTheSpecificationsOwn) { expectClose(shared::kFormulaToneMap + uint32_t(ToneMap::pbrNeutral), neutral); }
+TEST(Formula, PbrNeutralIsTheSpecificationsOwn) {
+  expectClose(shared::kFormulaToneMap + uint32_t(ToneMap::pbrNeutral), neutral);
+}
 TEST(Formula, AcesIsTheFit) { expectClose(shared::kFormulaToneMap + uint32_t(ToneMap::aces), aces); }
 TEST(Formula, AgxIsThePolynomial) { expectClose(shared::kFormulaToneMap + uint32_t(ToneMap::agx), agx); }
 TEST(Formula, SrgbIsTheStandards) { expectClose(shared::kFormulaSrgb, srgb); }

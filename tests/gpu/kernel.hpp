@@ -23,11 +23,11 @@ vk::Buffer inputOf(const std::vector<T>& values) {
 
 constexpr uint32_t kOutputBinding = 30;  ///< beyond those of bindings.h
 
-/// Runs a kernel once over `groups` workgroups, its results in binding kOutputBinding, and gives `count` of them. A kernel is compiled the
-/// first time; its layout is that of the first bindings it sees.
+/// Runs a kernel once over `groups` workgroups, its results in binding kOutputBinding, and gives `count` of them. A
+/// kernel is compiled the first time; its layout is that of the first bindings it sees.
 template <class T, class Push>
-std::vector<T> runKernel(std::span<const uint32_t> spirv, std::vector<vk::Binding> bindings, const Push& push, size_t count,
-                         uint32_t groups) {
+std::vector<T> runKernel(std::span<const uint32_t> spirv, std::vector<vk::Binding> bindings, const Push& push,
+                         size_t count, uint32_t groups) {
   static std::map<const uint32_t*, vk::ComputePipeline> pipelines;
   vk::Device& device = SharedDevice::get();
   const vk::Buffer out = must(vk::Buffer::create(device, kernelBuffer("output", count * sizeof(T))));
@@ -42,7 +42,8 @@ std::vector<T> runKernel(std::span<const uint32_t> spirv, std::vector<vk::Bindin
     desc.pushConstantBytes = sizeof(Push);
     pipeline = must(vk::ComputePipeline::create(device, desc));
   }
-  must(gpu::runNow(device, [&](vk::CommandRecorder& r) { r.dispatch(pipeline, bindings, vk::pushBytes(push), groups); }));
+  must(gpu::runNow(device,
+                   [&](vk::CommandRecorder& r) { r.dispatch(pipeline, bindings, vk::pushBytes(push), groups); }));
   return must(vk::readBackArray<T>(device, out, count));
 }
 

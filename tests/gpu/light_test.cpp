@@ -33,7 +33,8 @@ SceneBuilder sky(uint32_t width, uint32_t height, bool hotTexel) {
   for (uint32_t y = 0; y < height; ++y)
     for (uint32_t x = 0; x < width; ++x) {
       const bool hot = hotTexel && x == width / 3 && y == height / 4;
-      const float value = hot ? 2e3f * float(width * height) / 512.0f : 0.1f + float(x) / float(width) + float(y) / float(height);
+      const float value =
+          hot ? 2e3f * float(width * height) / 512.0f : 0.1f + float(x) / float(width) + float(y) / float(height);
       for (int k = 0; k < 4; ++k) image.rgbaF.push_back(value);
     }
   b.scene.images.push_back(image);
@@ -60,13 +61,15 @@ std::string skyName(const testing::TestParamInfo<SkyCase>& info) { return info.p
 class EnvironmentTable : public testing::TestWithParam<SkyCase> {};
 INSTANTIATE_TEST_SUITE_P(Skies, EnvironmentTable,
                          testing::Values(SkyCase{"Gradient", 64, 32, false}, SkyCase{"HotTexel", 64, 32, true},
-                                         SkyCase{"LargeGradient", 1024, 512, false}, SkyCase{"LargeHotTexel", 1024, 512, true}),
+                                         SkyCase{"LargeGradient", 1024, 512, false},
+                                         SkyCase{"LargeHotTexel", 1024, 512, true}),
                          skyName);
 
 TEST_P(EnvironmentTable, DirectionsFollowTheirPdf) {
   const auto mirror = mirrorOf(sky(GetParam().width, GetParam().height, GetParam().hot));
-  const auto mass = runKernel<glm::vec4>(lightsSpirv, mirror->bindings(), shared::LightsPush{{}, 0, shared::kLightsMass, kBins, 0},
-                                         kBins, groupsFor(kBins));
+  const auto mass =
+      runKernel<glm::vec4>(lightsSpirv, mirror->bindings(), shared::LightsPush{{}, 0, shared::kLightsMass, kBins, 0},
+                           kBins, groupsFor(kBins));
   double total = 0.0;
   std::vector<double> expected, counts(kBins, 0.0);
   for (const glm::vec4& m : mass) {
@@ -81,8 +84,9 @@ TEST_P(EnvironmentTable, DirectionsFollowTheirPdf) {
     glm::vec3 radiance;
     float y;
   };
-  const auto draws = runKernel<Draw>(lightsSpirv, mirror->bindings(),
-                                     shared::LightsPush{{}, 0, shared::kLightsEnvironment, kDraws, 9}, kDraws, groupsFor(kDraws));
+  const auto draws =
+      runKernel<Draw>(lightsSpirv, mirror->bindings(), shared::LightsPush{{}, 0, shared::kLightsEnvironment, kDraws, 9},
+                      kDraws, groupsFor(kDraws));
   uint32_t strangers = 0;
   for (const Draw& d : draws) {
     const uint32_t row = std::min(uint32_t((0.5 - 0.5 * d.y) * kEnvironmentRows), kEnvironmentRows - 1);
@@ -109,8 +113,9 @@ TEST(LightChoice, FollowsThePowers) {
       sum += power;
     }
     const auto mirror = mirrorOf(b);
-    const auto draws = runKernel<glm::vec4>(lightsSpirv, mirror->bindings(),
-                                            shared::LightsPush{{}, 0, shared::kLightsChoose, kDraws, 5}, kDraws, groupsFor(kDraws));
+    const auto draws =
+        runKernel<glm::vec4>(lightsSpirv, mirror->bindings(),
+                             shared::LightsPush{{}, 0, shared::kLightsChoose, kDraws, 5}, kDraws, groupsFor(kDraws));
     std::vector<double> counts(count, 0.0), expected, rest(32, 0.0);
     for (uint32_t i = 0; i < count; ++i) {
       expected.push_back(kDraws * double(b.scene.lights[i].intensity) / sum);
@@ -153,8 +158,8 @@ TEST(TriangleLight, PointsAreUniformAndTheirPdfIsOverSolidAngle) {
       float pdf;
     };
     const auto draws = runKernel<Draw>(lightsSpirv, mirror->bindings(),
-                                       shared::LightsPush{glm::vec3(from), 0, shared::kLightsTriangle, kDraws, 8}, kDraws,
-                                       groupsFor(kDraws));
+                                       shared::LightsPush{glm::vec3(from), 0, shared::kLightsTriangle, kDraws, 8},
+                                       kDraws, groupsFor(kDraws));
     constexpr int kSide = 16;
     std::vector<double> counts(kSide * kSide, 0.0), expected(kSide * kSide, 0.0);
     for (int i = 0; i < kSide; ++i)
@@ -171,7 +176,8 @@ TEST(TriangleLight, PointsAreUniformAndTheirPdfIsOverSolidAngle) {
       const auto index = [](double x) { return std::clamp(int(x * kSide), 0, kSide - 1); };
       const int i = index(u), j = std::min(index(v), kSide - 1 - i);
       counts[size_t(i * kSide + j)] += 1;
-      const double area = 0.5 * glm::length(normal), pdf = t * t / (area * std::abs(glm::dot(w, glm::normalize(normal))));
+      const double area = 0.5 * glm::length(normal),
+                   pdf = t * t / (area * std::abs(glm::dot(w, glm::normalize(normal))));
       ASSERT_NEAR(d.pdf, pdf, 1e-4 * pdf);
       ASSERT_NEAR(d.radiance.g, 2.0 / pdf, 2e-4 / pdf);
       ASSERT_NEAR(d.distance, t, 1e-4 * t);

@@ -67,7 +67,8 @@ TEST(Sampler, TriangleIsUniform) {
   constexpr int kSide = 24;
   std::vector<double> counts(kSide * kSide, 0.0), expected(kSide * kSide, 0.0);
   for (int i = 0; i < kSide; ++i)
-    for (int j = 0; i + j < kSide; ++j) expected[size_t(i * kSide + j)] = double(kPoints) / (kSide * kSide) * (i + j == kSide - 1 ? 1 : 2);
+    for (int j = 0; i + j < kSide; ++j)
+      expected[size_t(i * kSide + j)] = double(kPoints) / (kSide * kSide) * (i + j == kSide - 1 ? 1 : 2);
   for (const glm::vec4& p : draw(shared::kSamplerTriangle, 4)) {
     ASSERT_TRUE(p.x >= 0 && p.y >= 0 && p.x + p.y <= 1.000001f);
     counts[size_t(std::min(int(p.x * kSide), kSide - 1) * kSide + std::min(int(p.y * kSide), kSide - 1))] += 1.0;
@@ -81,17 +82,17 @@ struct Lobe {
 
 class VisibleNormals : public testing::TestWithParam<Lobe> {};
 INSTANTIATE_TEST_SUITE_P(Lobes, VisibleNormals,
-                         testing::Values(Lobe{0.01f, 1.0f}, Lobe{0.01f, 0.5f}, Lobe{0.01f, 0.03f}, Lobe{0.1f, 1.0f}, Lobe{0.1f, 0.5f},
-                                         Lobe{0.1f, 0.03f}, Lobe{0.5f, 1.0f}, Lobe{0.5f, 0.5f}, Lobe{0.5f, 0.03f}, Lobe{1.0f, 1.0f},
-                                         Lobe{1.0f, 0.5f}, Lobe{1.0f, 0.03f}));
+                         testing::Values(Lobe{0.01f, 1.0f}, Lobe{0.01f, 0.5f}, Lobe{0.01f, 0.03f}, Lobe{0.1f, 1.0f},
+                                         Lobe{0.1f, 0.5f}, Lobe{0.1f, 0.03f}, Lobe{0.5f, 1.0f}, Lobe{0.5f, 0.5f},
+                                         Lobe{0.5f, 0.03f}, Lobe{1.0f, 1.0f}, Lobe{1.0f, 0.5f}, Lobe{1.0f, 0.03f}));
 
 TEST_P(VisibleNormals, FollowTheirDensity) {
   const auto [alpha, cosine] = GetParam();
   const float sine = std::sqrt(1 - cosine * cosine);
   const glm::vec3 wo(sine * std::cos(0.7f), sine * std::sin(0.7f), cosine);
   const auto mass = runKernel<glm::vec4>(samplersSpirv, {},
-                                         shared::SamplersPush{wo, alpha, shared::kSamplerVisibleNormal, 1, kBins, 0}, kBins,
-                                         groupsFor(kBins));
+                                         shared::SamplersPush{wo, alpha, shared::kSamplerVisibleNormal, 1, kBins, 0},
+                                         kBins, groupsFor(kBins));
   double total = 0.0;
   std::vector<double> expected;
   for (const glm::vec4& m : mass) {

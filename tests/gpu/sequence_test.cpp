@@ -33,7 +33,8 @@ void expectNet(const Points& points, uint32_t pixel, uint32_t pair, uint32_t fir
       const glm::vec2 p = points.at(pixel, first + i, pair);
       boxes.insert(uint32_t(p.x * float(1u << a)) << (log2n - a) | uint32_t(p.y * float(1u << (log2n - a))));
     }
-    EXPECT_EQ(boxes.size(), size_t(1) << log2n) << "pixel " << pixel << ", pair " << pair << ", first " << first << ", a " << a;
+    EXPECT_EQ(boxes.size(), size_t(1) << log2n)
+        << "pixel " << pixel << ", pair " << pair << ", first " << first << ", a " << a;
   }
 }
 
@@ -60,7 +61,8 @@ TEST(Sequence, PixelsSamplesAndPairsAreIndependent) {
       std::vector<double> counts(kSide * kSide, 0.0);
       for (uint32_t pixel = 0; pixel < kPixels; ++pixel)
         counts[uint32_t(coordinate(pixel, j) * kSide) * kSide + uint32_t(coordinate(pixel, k) * kSide)] += 1;
-      const GoodnessOfFit fit = chiSquare(counts, std::vector<double>(kSide * kSide, double(kPixels) / (kSide * kSide)));
+      const GoodnessOfFit fit =
+          chiSquare(counts, std::vector<double>(kSide * kSide, double(kPixels) / (kSide * kSide)));
       EXPECT_GT(fit.p, 0.01 / 60) << "coordinates " << j << " and " << k << ", " << fit.worst;
     }
 }

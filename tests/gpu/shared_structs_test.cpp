@@ -52,11 +52,11 @@ void fillScene(Filler& fill, Structs& s) {
   auto& i = s.imageInfo[1];
   fill(sizeof i, i.firstTexel, i.width, i.height, i.pad);
   auto& m = s.materialData[1];
-  fill(sizeof m, m.baseColor, m.emission, m.metallic, m.roughness, m.ior, m.transmission, m.specular, m.specularColor, m.clearcoat,
-       m.clearcoatRoughness, m.alphaCutoff, m.absorption, m.flags, m.firstSlot, m.slotCount);
+  fill(sizeof m, m.baseColor, m.emission, m.metallic, m.roughness, m.ior, m.transmission, m.specular, m.specularColor,
+       m.clearcoat, m.clearcoatRoughness, m.alphaCutoff, m.absorption, m.flags, m.firstSlot, m.slotCount);
   auto& l = s.lightData[1];
-  fill(sizeof l, l.posR, l.type, l.dirR, l.triangle, l.color, l.invRange, l.spotScale, l.spotOffset, l.area, l.probability,
-       l.aliasShare, l.alias);
+  fill(sizeof l, l.posR, l.type, l.dirR, l.triangle, l.color, l.invRange, l.spotScale, l.spotOffset, l.area,
+       l.probability, l.aliasShare, l.alias);
   auto& n = s.sceneInfo[1];
   fill(sizeof n, n.lightCount, n.environmentLight, n.environmentWidth, n.environmentHeight, n.environmentRadiance,
        n.environmentRotation, n.distributionWidth, n.distributionHeight, n.sceneRadius, n.triangleCount);

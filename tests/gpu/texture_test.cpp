@@ -26,7 +26,8 @@ int wrapped(int64_t i, int size, Wrap mode) {
 }
 
 glm::dvec4 texel(const Image& image, const TextureRef& ref, bool srgb, int64_t x, int64_t y) {
-  const size_t at = size_t(wrapped(y, int(image.height), ref.wrapT)) * image.width + size_t(wrapped(x, int(image.width), ref.wrapS));
+  const size_t at =
+      size_t(wrapped(y, int(image.height), ref.wrapT)) * image.width + size_t(wrapped(x, int(image.width), ref.wrapS));
   glm::dvec4 c;
   for (int k = 0; k < 4; ++k) {
     c[k] = image.rgba8[4 * at + size_t(k)] / 255.0;
@@ -35,10 +36,11 @@ glm::dvec4 texel(const Image& image, const TextureRef& ref, bool srgb, int64_t x
   return c;
 }
 
-/// glTF's sampler after KHR_texture_transform, in double precision. Rotations are counter-clockwise as seen with v downwards, as
-/// its text and the viewers have it; the GLSL in its README turns the other way.
+/// glTF's sampler after KHR_texture_transform, in double precision. Rotations are counter-clockwise as seen with v
+/// downwards, as its text and the viewers have it; the GLSL in its README turns the other way.
 glm::dvec4 reference(const Image& image, const TextureRef& ref, bool srgb, const glm::vec4& coordinates) {
-  const glm::dvec2 uv = ref.texCoord == 1 ? glm::dvec2(coordinates.z, coordinates.w) : glm::dvec2(coordinates.x, coordinates.y);
+  const glm::dvec2 uv =
+      ref.texCoord == 1 ? glm::dvec2(coordinates.z, coordinates.w) : glm::dvec2(coordinates.x, coordinates.y);
   const glm::dvec2 scaled = uv * glm::dvec2(ref.scale);
   const double c = std::cos(double(ref.rotation)), s = std::sin(double(ref.rotation));
   const glm::dvec2 turned(c * scaled.x + s * scaled.y, -s * scaled.x + c * scaled.y);
@@ -87,7 +89,8 @@ TEST(Texture, EverySamplerMatchesTheReference) {
 
   std::mt19937 engine(4);
   std::uniform_real_distribution<float> wide(-4, 5), unit(0, 1);
-  std::vector<glm::vec4> coordinates{{0, 0, 0, 0}, {0.5f, 0.5f, 0.5f, 0.5f}, {0.999f, 0.001f, 0.001f, 0.999f}, {-1.25f, 2.75f, 3.5f, -2.5f}};
+  std::vector<glm::vec4> coordinates{
+      {0, 0, 0, 0}, {0.5f, 0.5f, 0.5f, 0.5f}, {0.999f, 0.001f, 0.001f, 0.999f}, {-1.25f, 2.75f, 3.5f, -2.5f}};
   for (int i = 0; i < 500; ++i) coordinates.push_back({unit(engine), unit(engine), unit(engine), unit(engine)});
   for (int i = 0; i < 500; ++i) coordinates.push_back({wide(engine), wide(engine), wide(engine), wide(engine)});
   const vk::Buffer in = inputOf(coordinates);
@@ -99,7 +102,8 @@ TEST(Texture, EverySamplerMatchesTheReference) {
     const bool srgb = slot % 2 == 0;  // a material's slots: base colour, then metallic-roughness
     const Image& image = b.scene.images[size_t(slots[slot].image)];
     const auto sampled = runKernel<glm::vec4>(texturesSpirv, gpu::joined(mirror.bindings(), {vk::storage(31, in)}),
-                                              Push{slot, uint32_t(coordinates.size())}, coordinates.size(), groupsFor(coordinates.size()));
+                                              Push{slot, uint32_t(coordinates.size())}, coordinates.size(),
+                                              groupsFor(coordinates.size()));
     int wrong = 0;
     for (size_t i = 0; i < coordinates.size(); ++i) {
       const glm::dvec4 difference = glm::dvec4(sampled[i]) - reference(image, slots[slot], srgb, coordinates[i]);

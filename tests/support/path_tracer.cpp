@@ -73,8 +73,14 @@ FilmImage PathTracer::render(const Scene& scene, const RenderOptions& options) {
   const shared::CameraData camera = cameraData(scene.view, mirror.renderOrigin());
   require(vk::uploadArray(p.device, p.camera, std::span<const shared::CameraData>(&camera, 1)));
 
-  const TechniqueContext context{.device = p.device, .scene = mirror, .bvh = bvh, .camera = p.camera, .film = p.film,
-                                 .statistics = p.statistics, .seed = options.seed, .firstSample = 0,
+  const TechniqueContext context{.device = p.device,
+                                 .scene = mirror,
+                                 .bvh = bvh,
+                                 .camera = p.camera,
+                                 .film = p.film,
+                                 .statistics = p.statistics,
+                                 .seed = options.seed,
+                                 .firstSample = 0,
                                  .sampleLimit = options.samples};
   p.technique->setParameter("maxBounces", options.maxBounces);
   p.technique->setParameter("rouletteStart", options.rouletteStart);

@@ -10,14 +10,14 @@
 namespace limn::test {
 
 struct RenderOptions {
-  uint32_t samples = 64;       ///< of every pixel
+  uint32_t samples = 64;  ///< of every pixel
   uint32_t seed = 1;
   uint32_t maxBounces = 1000;  ///< closed forms know no limit
   uint32_t rouletteStart = 3;
 };
 
-/// The path-tracing technique with a film of kSize x kSize and without the session about it, so that a program with many small
-/// scenes compiles once.
+/// The path-tracing technique with a film of kSize x kSize and without the session about it, so that a program with
+/// many small scenes compiles once.
 class PathTracer {
  public:
   static constexpr uint32_t kSize = 16;  ///< [pixel]

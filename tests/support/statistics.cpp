@@ -53,7 +53,8 @@ GoodnessOfFit chiSquare(std::span<const double> counts, std::span<const double> 
     ++bins;
     if (part > worst) {
       worst = part;
-      fit.worst = "bin " + std::to_string(bin) + " counts " + std::to_string(count) + " for " + std::to_string(expectation);
+      fit.worst =
+          "bin " + std::to_string(bin) + " counts " + std::to_string(count) + " for " + std::to_string(expectation);
     }
     count = expectation = 0.0;
   };

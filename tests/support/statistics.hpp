@@ -13,12 +13,12 @@ double normalTails(double z);
 struct GoodnessOfFit {
   double statistic = 0.0;
   uint32_t dof = 0;
-  double p = 0.0;        ///< of a statistic at least as large, if the counts follow the expectations
-  std::string worst;     ///< the bin that adds most, for a failed test's output
+  double p = 0.0;     ///< of a statistic at least as large, if the counts follow the expectations
+  std::string worst;  ///< the bin that adds most, for a failed test's output
 };
 
-/// Pearson's test of counts against expected counts. Bins that expect under 5 are merged, the rarest first; a count where
-/// almost nothing is expected gives p = 0.
+/// Pearson's test of counts against expected counts. Bins that expect under 5 are merged, the rarest first; a count
+/// where almost nothing is expected gives p = 0.
 GoodnessOfFit chiSquare(std::span<const double> counts, std::span<const double> expected);
 
 }  // namespace limn::test

@@ -53,8 +53,10 @@ vec3 binDirection(float row, float column) {
 vec4 integral(Bsdf f, uint bin) {
   vec4 sum = vec4(0.0);
   for (uint i = 0u; i < kBsdfSubdivisions * kBsdfSubdivisions; ++i) {
-    float row = (float(bin / kColumnBins) + (float(i / kBsdfSubdivisions) + 0.5) / float(kBsdfSubdivisions)) / float(kRowBins);
-    float column = (float(bin % kColumnBins) + (float(i % kBsdfSubdivisions) + 0.5) / float(kBsdfSubdivisions)) / float(kColumnBins);
+    float row =
+        (float(bin / kColumnBins) + (float(i / kBsdfSubdivisions) + 0.5) / float(kBsdfSubdivisions)) / float(kRowBins);
+    float column = (float(bin % kColumnBins) + (float(i % kBsdfSubdivisions) + 0.5) / float(kBsdfSubdivisions)) /
+                   float(kColumnBins);
     float pdf;
     vec3 value = evaluateBsdf(f, case_.woW, binDirection(row, column), pdf);
     sum += vec4(value, pdf) * (pow(row, case_.concentration - 1.0) * case_.concentration);

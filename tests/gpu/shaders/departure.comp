@@ -37,5 +37,6 @@ void main() {
   float phi = 2.0 * kPi * random(), cosine = pow(10.0, -3.0 * random()), side = random() < 0.5 ? -1.0 : 1.0;
   float sine = sqrt(1.0 - cosine * cosine);
   vec3 away = sine * (cos(phi) * t + sin(phi) * b) + side * cosine * s.geometricNormal;
-  result[i] = traceClosest(offsetOrigin(s.posR, s.geometricNormal, away, s.extent), away, kInfinity, alphaState, hit) ? 1u : 0u;
+  result[i] =
+      traceClosest(offsetOrigin(s.posR, s.geometricNormal, away, s.extent), away, kInfinity, alphaState, hit) ? 1u : 0u;
 }

@@ -21,8 +21,10 @@ float random() {
 float environmentMass(uint bin) {
   float sum = 0.0;
   for (uint i = 0u; i < kBinPoints * kBinPoints; ++i) {
-    float row = (float(bin / kEnvironmentColumns) + (float(i / kBinPoints) + 0.5) / float(kBinPoints)) / float(kEnvironmentRows);
-    float column = (float(bin % kEnvironmentColumns) + (float(i % kBinPoints) + 0.5) / float(kBinPoints)) / float(kEnvironmentColumns);
+    float row = (float(bin / kEnvironmentColumns) + (float(i / kBinPoints) + 0.5) / float(kBinPoints)) /
+                float(kEnvironmentRows);
+    float column = (float(bin % kEnvironmentColumns) + (float(i % kBinPoints) + 0.5) / float(kBinPoints)) /
+                   float(kEnvironmentColumns);
     vec2 uv = vec2(column, acos(1.0 - 2.0 * row) * kInvPi);
     sum += environmentPdf(environmentDirection(uv));
   }

@@ -28,7 +28,8 @@ float visibleNormalMass(uint bin) {
   float sum = 0.0;
   for (uint i = 0u; i < kSubdivisions * kSubdivisions; ++i) {
     float z = (float(bin / kPhiBins) + (float(i / kSubdivisions) + 0.5) / float(kSubdivisions)) / float(kThetaBins);
-    float phi = (float(bin % kPhiBins) + (float(i % kSubdivisions) + 0.5) / float(kSubdivisions)) / float(kPhiBins) * 2.0 * kPi;
+    float phi =
+        (float(bin % kPhiBins) + (float(i % kSubdivisions) + 0.5) / float(kSubdivisions)) / float(kPhiBins) * 2.0 * kPi;
     vec3 h = vec3(push.alpha * sqrt(1.0 - z * z) * vec2(cos(phi), sin(phi)), z);
     float len = length(h);
     sum += visibleNormalPdf(push.wo, h / len, push.alpha) * square(push.alpha) / (len * len * len);
