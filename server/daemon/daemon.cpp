@@ -56,6 +56,7 @@ Result<void> checkOptions(const DaemonOptions& options) {
 
 Result<void> serve(const DaemonOptions& options, SignalWatcher& signals) {
   Mailbox mailbox;
+  mailbox.push(WatchRequest{false});  // nobody looks until the service says so: no work is done before
   FrameSlot frames;
   StatusQueue replies;
   RenderThread renderer(options, mailbox, frames, replies);
