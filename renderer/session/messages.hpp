@@ -36,7 +36,6 @@ struct DescribeRequest { Origin from; };
 struct WaitRequest { Origin from; uint32_t steps = 0; };
 /// Whether anybody looks; with nobody watching and nothing asked the loop sleeps.
 struct WatchRequest { bool watched = true; };
-/// Display size of frames while moving may be divided; told by the server from link quality. Reserved ranges are checked there.
 using Request = std::variant<EditRequest, LoadRequest, PickRequest, SaveRequest, DescribeRequest, WaitRequest, WatchRequest>;
 
 /// What was edited and what it cost. One for every EditRequest, also for camera edits that a later one replaced.
