@@ -138,7 +138,7 @@ Result<void> Session::Impl::writeCamera() {
 }
 
 TechniqueContext Session::Impl::context() {
-  return {device, mirror, bvh, camera, *film, *statistics, config.seed, config.firstSample, config.sampleCount};
+  return {device, scene, mirror, bvh, camera, *film, *statistics, config.seed, config.firstSample, config.sampleCount};
 }
 
 Result<void> Session::Impl::restartFilm(CostClass cost) {

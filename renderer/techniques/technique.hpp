@@ -16,6 +16,7 @@ namespace limn {
 /// What every technique draws from. All of it outlives the technique and stays put while the scene does.
 struct TechniqueContext {
   vk::Device& device;
+  const Scene& description;          ///< the plain data that `scene` mirrors
   const gpu::DeviceScene& scene;
   const SceneBvh& bvh;
   const vk::Buffer& camera;          ///< one shared::CameraData

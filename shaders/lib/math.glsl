@@ -29,6 +29,26 @@ vec3 octDecode(uint packed) {
   return normalize(v);
 }
 
+// Its inverse, for unit vectors; error below 7e-5 rad.
+uint octEncode(vec3 n) {
+  n /= abs(n.x) + abs(n.y) + abs(n.z);
+  vec2 folded = (1.0 - abs(n.yx)) * vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
+  return packSnorm2x16(n.z < 0.0 ? folded : n.xy);
+}
+
+// Three magnitudes with one exponent of 8 bits; relative error of the largest below 1/256, 0 and 2^-127...2^127 are kept.
+uint packRgbe(vec3 v) {
+  float largest = max(v.x, max(v.y, v.z));
+  if (!(largest > 1e-38)) return 0u;
+  int exponent;
+  frexp(min(largest, 1e38), exponent);
+  uvec3 m = min(uvec3(ldexp(clamp(v, 0.0, 1e38), ivec3(8 - exponent)) + 0.5), uvec3(255u));
+  return m.x | m.y << 8 | m.z << 16 | uint(exponent + 127) << 24;
+}
+vec3 unpackRgbe(uint p) {
+  return ldexp(vec3(p & 255u, (p >> 8) & 255u, (p >> 16) & 255u), ivec3(int(p >> 24) - 127 - 8));
+}
+
 // A point just off the surface on the side that `dirW` leaves to. The shift covers the rounding of a point that was
 // interpolated from corners of magnitude `extent` [m]: barycentric sums err by a few ulp of the largest corner coordinate.
 vec3 offsetOrigin(vec3 p, vec3 geometricNormal, vec3 dir, float extent) {

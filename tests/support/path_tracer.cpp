@@ -74,6 +74,7 @@ FilmImage PathTracer::render(const Scene& scene, const RenderOptions& options) {
   require(vk::uploadArray(p.device, p.camera, std::span<const shared::CameraData>(&camera, 1)));
 
   const TechniqueContext context{.device = p.device,
+                                 .description = scene,
                                  .scene = mirror,
                                  .bvh = bvh,
                                  .camera = p.camera,

@@ -1,0 +1,54 @@
+// What gathers read and write, as C++ and GLSL see it.
+#ifndef LIMN_GATHER_SHARED_H
+#define LIMN_GATHER_SHARED_H
+#include "shaders/shared/shared.h"
+#ifndef LIMN_GLSL
+namespace limn::shared {
+#endif
+
+// GGX alpha below which a lobe is too sharp for splats and is traced by rays. [IPP §6: Phong exponents under 50]
+LIMN_CONST_FLOAT(kSplatAlpha, 0.2f);
+
+// What a pixel sees, and where its light is gathered.
+struct GatherSite {
+  vec3 posR;          // [m], render space
+  uint normal;        // shading, unit, towards the viewer, octahedral
+  uint triangle;      // global id; kNoIndex where the pixel sees no surface that gathers
+  vec2 barycentrics;  // weights of corners 1 and 2
+  uint object;        // material: tells touching objects apart
+};
+LIMN_ASSERT_SIZE(GatherSite, 32);
+
+// IndirectTexel.state
+LIMN_CONST_FLOAT(kIndirectNone, 0.0f);
+LIMN_CONST_FLOAT(kIndirectInterpolated, 1.0f);
+LIMN_CONST_FLOAT(kIndirectSampled, 2.0f);
+
+// Indirect light at a pixel, kept free of the surface's colours so that textures stay sharp. [IPP §4, Microbuffers]
+struct IndirectTexel {
+  vec3 diffuse;   // irradiance / pi [W·sr⁻¹·m⁻²]; times the diffuse albedo it is radiance
+  float count;    // gathers averaged; 0 when interpolated
+  vec3 glossy;    // reflected by rough glossy lobes, over the reflectance at normal incidence
+  float state;    // kIndirect...
+};
+LIMN_ASSERT_SIZE(IndirectTexel, 32);
+
+// One dispatch of gathers by point projection; one workgroup a site.
+struct PointProjectionPush {
+  uint firstEntry;     // of the site list
+  uint entryCount;     // sites of this dispatch
+  uint seed;
+  uint round;          // which gather at its site this is: other random numbers, averaged with those before
+  uint projections;    // points projected a site, exploration included [IPP: 3,072]
+  uint clusterCount;   // power of two
+  uint clusterSize;    // points a cluster
+  uint clusterUsed;    // points a cluster that are lit so far, the first ones; <= clusterSize
+  float areaPerPoint;  // [m²] of the whole set; a lit one stands for clusterSize / clusterUsed as much
+  uint microSize;      // side of the micro-buffer [texel], <= 32
+};
+LIMN_ASSERT_SIZE(PointProjectionPush, 40);
+
+#ifndef LIMN_GLSL
+}  // namespace limn::shared
+#endif
+#endif
