@@ -15,7 +15,7 @@ inline std::vector<uint32_t> needsConstants(const SceneNeeds& needs) {
 
 /// Every need at once: the variant that renders anything.
 inline SceneNeeds allNeeds() {
-  return {true, true, true, true, true, true, true, true, true, true, true, true};
+  return {true, true, true, true, true, true, true, true, true, true, true, true, true};
 }
 
 /// Whether a pipeline made for `made` renders a scene that needs `wanted`.

@@ -32,6 +32,11 @@ bool mayBeMirror(const Material& m) {
   return (reflectsSpecularly(m) && smooth) || smoothCoat;
 }
 
+bool mayBeSharp(const Material& m) {
+  const bool narrow = m.roughness < kSharpRoughness || m.metallicRoughnessTexture.present();
+  return m.transmission > 0.0f || m.clearcoat > 0.0f || (reflectsSpecularly(m) && narrow);
+}
+
 void addMaterial(SceneNeeds& needs, const Material& m) {
   needs.textures |= samplesImage(m);
   needs.alpha |= m.alphaMode != AlphaMode::opaque;
@@ -42,6 +47,7 @@ void addMaterial(SceneNeeds& needs, const Material& m) {
   needs.clearcoat |= m.clearcoat > 0.0f;
   needs.glossy |= reflectsSpecularly(m);
   needs.mirror |= mayBeMirror(m);
+  needs.sharp |= mayBeSharp(m);
 }
 
 }  // namespace
@@ -84,6 +90,7 @@ std::vector<std::string> describe(const SceneNeeds& needs) {
       {needs.clearcoat, "clearcoat"},
       {needs.glossy, "glossy"},
       {needs.mirror, "mirror"},
+      {needs.sharp, "sharp"},
       {needs.vertexColors, "vertexColors"},
   };
   std::vector<std::string> names;

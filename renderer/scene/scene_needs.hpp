@@ -20,9 +20,14 @@ struct SceneNeeds {
   bool clearcoat = false;
   bool glossy = false;  ///< any specular reflection that is not rough diffuse
   bool mirror = false;  ///< roughness below the delta limit, or smooth transmission
+  bool sharp = false;   ///< a lobe too narrow for splats: roughness that may fall below kSharpRoughness, transmission, a coat
   bool vertexColors = false;
   bool operator==(const SceneNeeds&) const = default;
 };
+
+/// Perceptual roughness under which a lobe counts as sharp; its square is kSplatAlpha of the shaders.
+constexpr float kSharpRoughness = 0.4473f;
+
 SceneNeeds sceneNeeds(const Scene& scene);
 
 /// Names of the set flags, for statistics and logs.

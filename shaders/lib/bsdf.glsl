@@ -84,7 +84,7 @@ bool isMirror(float alpha) { return alpha <= kMinAlpha; }
 // Value * |cos| of the clearcoat alone, and its pdf.
 float evaluateClearcoat(Bsdf f, vec3 woW, vec3 wiW, out float pdf) {
   pdf = 0.0;
-  if (!kUseClearcoat || f.s.clearcoat <= 0.0 || isMirror(f.s.clearcoatAlpha)) return 0.0;
+  if (!kUseClearcoat || f.shares.clearcoat <= 0.0 || isMirror(f.s.clearcoatAlpha)) return 0.0;
   vec3 t, b;
   makeFrame(f.s.clearcoatNormal, t, b);
   vec3 wo = vec3(dot(woW, t), dot(woW, b), dot(woW, f.s.clearcoatNormal));
@@ -108,7 +108,7 @@ vec3 evaluateBsdf(Bsdf f, vec3 woW, vec3 wiW, out float pdf) {
     vec3 h = normalize(wo + wi);
     float cosH = clamp(dot(wo, h), 0.0, 1.0);
     float body = (1.0 - f.s.metallic) * (1.0 - f.s.transmission) * (1.0 - maxComponent(dielectricFresnel(f, cosH)));
-    value = f.s.baseColor * (body * kInvPi * wi.z);
+    value = f.shares.diffuse > 0.0 ? f.s.baseColor * (body * kInvPi * wi.z) : vec3(0.0);
     pdf = f.shares.diffuse * wi.z * kInvPi;
     if (kUseSpecular && !isMirror(alpha) && f.shares.reflection > 0.0) {
       value += reflectionFresnel(f, cosH) * (ggxD(h, alpha) * ggxG2(wo, wi, alpha) / (4.0 * wo.z));

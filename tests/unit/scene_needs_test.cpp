@@ -46,12 +46,12 @@ TEST(SceneNeeds, MaterialFeatures) {
   EXPECT_EQ(needsOf([](Material& m) { m.alphaMode = AlphaMode::blend; }), Names{"alpha"});
   EXPECT_EQ(needsOf([](Material& m) { m.specular = 0.5f; }), Names{"glossy"});
   EXPECT_EQ(needsOf([](Material& m) { m.metallic = 0.5f; }), Names{"glossy"});
-  EXPECT_EQ(needsOf([](Material& m) { m.metallic = 1, m.roughness = 0; }), (Names{"glossy", "mirror"}));
-  EXPECT_EQ(needsOf([](Material& m) { m.transmission = 1; }), (Names{"transmission", "glossy"}));
+  EXPECT_EQ(needsOf([](Material& m) { m.metallic = 1, m.roughness = 0; }), (Names{"glossy", "mirror", "sharp"}));
+  EXPECT_EQ(needsOf([](Material& m) { m.transmission = 1; }), (Names{"transmission", "glossy", "sharp"}));
   EXPECT_EQ(needsOf([](Material& m) { m.transmission = 1, m.roughness = 0; }),
-            (Names{"transmission", "glossy", "mirror"}));
-  EXPECT_EQ(needsOf([](Material& m) { m.clearcoat = 1, m.clearcoatRoughness = 0.5f; }), (Names{"clearcoat", "glossy"}));
-  EXPECT_EQ(needsOf([](Material& m) { m.clearcoat = 1; }), (Names{"clearcoat", "glossy", "mirror"}));
+            (Names{"transmission", "glossy", "mirror", "sharp"}));
+  EXPECT_EQ(needsOf([](Material& m) { m.clearcoat = 1, m.clearcoatRoughness = 0.5f; }), (Names{"clearcoat", "glossy", "sharp"}));
+  EXPECT_EQ(needsOf([](Material& m) { m.clearcoat = 1; }), (Names{"clearcoat", "glossy", "mirror", "sharp"}));
   EXPECT_EQ(needsOf([](Material& m) { m.baseColorTexture.image = 0; }), Names{"textures"});
   EXPECT_EQ(needsOf([](Material& m) { m.normalTexture.image = 0; }), (Names{"textures", "normalMaps"}));
   EXPECT_EQ(needsOf([](Material& m) { m.roughness = 0; }), Names{});  // nothing specular to be smooth
@@ -59,7 +59,7 @@ TEST(SceneNeeds, MaterialFeatures) {
 
 TEST(SceneNeeds, ATextureMayMakeAnyRoughnessSmooth) {
   const Names needs = needsOf([](Material& m) { m.metallic = 1, m.metallicRoughnessTexture.image = 0; });
-  EXPECT_EQ(needs, (Names{"textures", "glossy", "mirror"}));
+  EXPECT_EQ(needs, (Names{"textures", "glossy", "mirror", "sharp"}));
 }
 
 TEST(SceneNeeds, UnlitMaterialsTransportNothing) {
