@@ -18,12 +18,4 @@ inline SceneNeeds allNeeds() {
   return {true, true, true, true, true, true, true, true, true, true, true, true, true};
 }
 
-/// Whether a pipeline made for `made` renders a scene that needs `wanted`.
-inline bool covers(const SceneNeeds& made, const SceneNeeds& wanted) {
-  const std::vector<uint32_t> have = needsConstants(made), want = needsConstants(wanted);
-  for (size_t i = 0; i < have.size(); ++i)
-    if (want[i] && !have[i]) return false;
-  return true;
-}
-
 }  // namespace limn::gpu

@@ -81,6 +81,7 @@ struct Session::Impl {
   ResolveSettings resolve;
   SceneNeeds needs;
   uint32_t sceneRevision = 0, viewRevision = 0;
+  uint64_t lightingRevision = 0;  ///< of the derived data
 
   gpu::DeviceScene mirror;
   SceneBvh bvh;

@@ -97,6 +97,7 @@ Result<void> Session::Impl::syncScene(const ChangeSet& changes) {
   if (!synced) return synced.error();
   if (auto done = updateBvh(*synced); !done) return done;
   needs = sceneNeeds(scene);
+  ++lightingRevision;
   return {};
 }
 
@@ -138,7 +139,8 @@ Result<void> Session::Impl::writeCamera() {
 }
 
 TechniqueContext Session::Impl::context() {
-  return {device, scene, mirror, bvh, camera, *film, *statistics, config.seed, config.firstSample, config.sampleCount};
+  return {device, scene, mirror, bvh, camera, *film, *statistics, config.seed, config.firstSample, lightingRevision,
+          config.sampleCount};
 }
 
 Result<void> Session::Impl::restartFilm(CostClass cost) {

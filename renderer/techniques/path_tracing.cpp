@@ -3,8 +3,7 @@
 #include <cmath>
 
 #include "renderer/base/clock.hpp"
-#include "renderer/gpu/needs_constants.hpp"
-#include "renderer/gpu/pass.hpp"
+#include "renderer/gpu/tailored_pass.hpp"
 #include "renderer/techniques/pixel_order.hpp"
 #include "renderer/techniques/work_rate.hpp"
 #include "renderer/vk/transfer.hpp"
@@ -55,11 +54,7 @@ class PathTracing final : public Technique {
   bool m_adaptive = true;
   float m_noiseThreshold = 0.01f;
 
-  /// The variant that renders anything, and the one cut to what the scene needs. An edit that adds a need is rendered by
-  /// the first, so that nothing is compiled while somebody waits.
-  gpu::Pass m_general, m_tailored;
-  SceneNeeds m_tailoredNeeds;
-  bool m_useGeneral = false;
+  gpu::TailoredPass m_trace{"path_tracing", sizeof(shared::PathTracingPush)};
   vk::Buffer m_order, m_active, m_counters;
   PixelOrder m_pixelOrder;
   uint32_t m_listWidth = 0, m_listHeight = 0;  ///< [pixel] the lists were made for
@@ -75,26 +70,7 @@ Result<void> PathTracing::prepare(const TechniqueContext& context, const SceneNe
   describeNeeds(needs);
   if (m_listWidth != context.film.width() || m_listHeight != context.film.height())
     if (auto made = makeLists(context); !made) return made;
-  const bool stale = !m_tailored || (mayCompile && m_tailoredNeeds != needs);
-  m_useGeneral = !stale && !gpu::covers(m_tailoredNeeds, needs);
-  if (!stale) return {};
-  const auto like = bindings(context, m_order);
-  const auto make = [&](const SceneNeeds& made) {
-    return gpu::Pass::create(context.device, "path_tracing", like, sizeof(shared::PathTracingPush), gpu::needsConstants(made));
-  };
-  auto tailored = make(needs);
-  if (!tailored) return tailored.error();
-  m_tailored = tailored.take();
-  m_tailoredNeeds = needs;
-  if (!m_general) {
-    auto general = make(gpu::allNeeds());
-    if (!general) return general.error();
-    m_general = general.take();
-  }
-  return gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
-    m_tailored.warmUp(r, like);
-    m_general.warmUp(r, like);
-  });
+  return m_trace.prepare(context.device, bindings(context, m_order), needs, mayCompile);
 }
 
 void PathTracing::describeNeeds(const SceneNeeds& needs) {
@@ -183,7 +159,7 @@ Result<void> PathTracing::dispatch(const TechniqueContext& context, uint32_t cou
   const auto all = bindings(context, adaptive ? m_active : m_order);
   const double begin = nowSeconds();
   auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
-    (m_useGeneral ? m_general : m_tailored).record(r, all, push, workgroups(count));
+    m_trace->record(r, all, push, workgroups(count));
   });
   if (!done) return done;
   m_rate.measured(uint64_t(count) * m_passSamples, nowSeconds() - begin);

@@ -24,6 +24,7 @@ struct TechniqueContext {
   FilmStatistics& statistics;
   uint32_t seed = 0;
   uint32_t firstSample = 0;          ///< index of the first sample taken of a pixel
+  uint64_t lightingRevision = 0;     ///< counts changes of anything that light meets or comes from
   uint32_t sampleLimit = 0;          ///< samples of every pixel at which to stop; 0: the technique's own end
 };
 

@@ -33,6 +33,13 @@ struct IndirectTexel {
 };
 LIMN_ASSERT_SIZE(IndirectTexel, 32);
 
+struct GatherSitesPush {
+  uint firstEntry;  // of the pixel list
+  uint entryCount;
+  uint seed;
+};
+LIMN_ASSERT_SIZE(GatherSitesPush, 12);
+
 // One dispatch of gathers by point projection; one workgroup a site.
 struct PointProjectionPush {
   uint firstEntry;     // of the site list
@@ -47,6 +54,19 @@ struct PointProjectionPush {
   uint microSize;      // side of the micro-buffer [texel], <= 32
 };
 LIMN_ASSERT_SIZE(PointProjectionPush, 40);
+
+// One sample of every pixel of a list: direct light, sharp lobes followed by rays, gathered light looked up.
+struct ShadePush {
+  uint firstEntry;      // of the pixel list
+  uint entryCount;
+  uint sampleIndex;     // of the film's samples; 0 goes through the pixel's centre
+  uint seed;
+  uint firstOfFilm;     // 1: the film holds nothing yet; what it holds is replaced
+  uint firstOfGather;   // 1: looked-up light of earlier samples is stale and dropped
+  uint directOnly;      // 1: no indirect light at all
+  uint pad;
+};
+LIMN_ASSERT_SIZE(ShadePush, 32);
 
 #ifndef LIMN_GLSL
 }  // namespace limn::shared

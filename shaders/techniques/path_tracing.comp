@@ -13,7 +13,7 @@
 #include "shaders/lib/alpha.glsl"
 #define LIMN_ALPHA
 #define LIMN_ALPHA_ENABLED kUseAlpha
-#include "shaders/lib/trace.glsl"
+#include "shaders/lib/shadow.glsl"
 
 layout(local_size_x = 64) in;
 layout(binding = BINDING_PIXEL_LIST, scalar) readonly buffer PixelList { uint pixelList[]; };
@@ -67,25 +67,6 @@ void addEmission(inout Path p, Surface s, Hit hit) {
   addRadiance(p, p.throughput * s.emission * weight, p.bounce);
 }
 
-uint traceCount = 0u;
-
-// The ray aims at the light's point from where it starts: a parallel one would meet a near emitter before its end.
-bool occluded(Surface s, LightSample light, uint alphaState) {
-  vec3 origin = offsetOrigin(s.posR, s.geometricNormal, light.dirW, s.extent);
-  bool near = light.distance < kInfinity;
-  vec3 way = near ? s.posR - origin + light.dirW * light.distance : light.dirW;
-  ++traceCount;
-  return traceAny(origin, way, near ? 1.0 : kInfinity, alphaState);
-}
-
-// What the medium between the surface and the light lets pass.
-vec3 transmittance(Path p, Bsdf f, LightSample light) {
-  if (!kUseTransmission) return vec3(1.0);
-  bool sameSide = f.thin || dot(f.s.geometricNormal, light.dirW) > 0.0;
-  vec3 absorption = sameSide ? p.absorption : f.s.frontFace ? materials[f.s.material].absorption : vec3(0.0);
-  return exp(-absorption * light.distance);
-}
-
 void addLights(inout Path p, Bsdf bsdf, vec3 woW) {
   vec2 choice = next2D(p.sampler_), u = next2D(p.sampler_);
   if (bsdf.shares.diffuse <= 0.0 && isMirror(bsdf.s.alpha) && bsdf.s.clearcoat <= 0.0) return;
@@ -96,7 +77,7 @@ void addLights(inout Path p, Bsdf bsdf, vec3 woW) {
   if (!(maxComponent(value) > 0.0)) return;
   if (occluded(bsdf.s, light, hashCombine(p.sampler_.key, p.sampler_.index ^ (p.bounce << 24)))) return;
   float weight = light.pdf > 0.0 ? powerHeuristic(light.pdf, bsdfPdf) : 1.0;
-  addRadiance(p, p.throughput * value * light.radiance * transmittance(p, bsdf, light) * weight, p.bounce + 1u);
+  addRadiance(p, p.throughput * value * light.radiance * transmittance(p.absorption, bsdf, light) * weight, p.bounce + 1u);
 }
 
 // Moves the path by one ray. False when it ended.

@@ -82,6 +82,7 @@ FilmImage PathTracer::render(const Scene& scene, const RenderOptions& options) {
                                  .statistics = p.statistics,
                                  .seed = options.seed,
                                  .firstSample = 0,
+                                 .lightingRevision = 0,
                                  .sampleLimit = options.samples};
   p.technique->setParameter("maxBounces", options.maxBounces);
   p.technique->setParameter("rouletteStart", options.rouletteStart);
