@@ -71,13 +71,12 @@ LightSample sampleTriangleLight(LightData light, vec3 p, vec2 u) {
   return s;
 }
 
-LightSample sampleLight(vec3 p, vec2 choice, vec2 u) {
+// `uAlias` is what the choice of the light left of its second number.
+LightSample sampleChosenLight(LightData light, vec3 p, float uAlias, vec2 u) {
   LightSample s = LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0);
-  if (sceneInfo.lightCount == 0u) return s;
-  LightData light = lights[chooseLight(choice)];
   if (kUseTriangleLights && light.type == kLightTriangle) return sampleTriangleLight(light, p, u);
   if (kUseEnvironment && light.type == kLightEnvironment) {
-    s.dirW = sampleEnvironment(u, choice.y, s.pdf);
+    s.dirW = sampleEnvironment(u, uAlias, s.pdf);
     s.pdf *= light.probability;
     s.distance = kInfinity;
     s.radiance = s.pdf > 0.0 ? environmentRadiance(s.dirW) / s.pdf : vec3(0.0);
@@ -99,6 +98,12 @@ LightSample sampleLight(vec3 p, vec2 choice, vec2 u) {
   if (light.type == kLightSpot) window *= spotRamp(light, s.dirW);
   s.radiance = light.color * (window / light.probability) / d / d;
   return s;
+}
+
+LightSample sampleLight(vec3 p, vec2 choice, vec2 u) {
+  if (sceneInfo.lightCount == 0u) return LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0);
+  LightData light = lights[chooseLight(choice)];
+  return sampleChosenLight(light, p, choice.y, u);
 }
 
 #endif

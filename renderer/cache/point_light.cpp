@@ -1,0 +1,171 @@
+#include "renderer/cache/point_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/vk/transfer.hpp"
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/film_shared.h"
+#include "shaders/shared/point_shared.h"
+#include "shaders/shared/relight_shared.h"
+
+namespace limn {
+namespace {
+
+constexpr uint32_t kWorkgroup = 64;       // of the shaders
+constexpr size_t kLobesConstant = 16;     // constant_id of kUseLobes in the shaders
+constexpr uint32_t kSampledLobes = 1;     // lobes left to lights that own none
+
+uint32_t workgroups(uint32_t invocations) { return (invocations + kWorkgroup - 1) / kWorkgroup; }
+
+bool isGlossySource(const Material& m) {
+  if (m.unlit) return false;
+  if (m.metallic > 0.0f) return true;  // textures and base colours decide point by point
+  const float r = (m.ior - 1.0f) / (m.ior + 1.0f);
+  const float tint = std::max({m.specularColor.r, m.specularColor.g, m.specularColor.b});
+  return std::min(r * r * tint, 1.0f) * m.specular >= shared::kLobeReflectance;
+}
+
+bool isPunctual(const shared::LightData& light) { return light.type <= shared::kLightDirectional; }
+
+/// Lights that own a lobe each: the punctual ones, which head the table. Where others are left, one lobe is theirs.
+uint32_t lobeLights(const std::vector<shared::LightData>& lights) {
+  const auto punctual = uint32_t(std::find_if_not(lights.begin(), lights.end(), isPunctual) - lights.begin());
+  if (punctual == lights.size() && punctual <= shared::kLobesPerPoint) return punctual;
+  return std::min(punctual, shared::kLobesPerPoint - kSampledLobes);
+}
+
+std::vector<uint32_t> constants(const SceneNeeds& needs) {
+  std::vector<uint32_t> words = gpu::needsConstants(needs);
+  LIMN_CHECK_LE(words.size(), kLobesConstant);
+  words.resize(kLobesConstant);
+  words.push_back(needs.glossy);
+  return words;
+}
+
+Result<vk::Buffer> makeBuffer(vk::Device& device, const char* name, size_t size, bool texels = false) {
+  vk::BufferDesc desc;
+  desc.owner = "point-light";
+  desc.name = name;
+  desc.size = size;
+  if (texels) {
+    desc.usage = vk::BufferUsage::storage | vk::BufferUsage::texel;
+    desc.texelFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+  }
+  return vk::Buffer::create(device, desc);
+}
+
+}  // namespace
+
+bool hasGlossySources(const Scene& scene) {
+  const auto isSource = [&](const Primitive& p) {
+    return !p.indices.empty() && isGlossySource(p.material == kNone ? Material{} : scene.materials[size_t(p.material)]);
+  };
+  return std::any_of(scene.nodes.begin(), scene.nodes.end(), [&](const Node& node) {
+    if (node.mesh == kNone) return false;
+    const std::vector<Primitive>& primitives = scene.meshes[size_t(node.mesh)].primitives;
+    return std::any_of(primitives.begin(), primitives.end(), isSource);
+  });
+}
+
+PointLightCache::PointLightCache()
+    : m_relight("relight_points", sizeof(shared::RelightPush), &constants),
+      m_compose("compose_points", sizeof(shared::ComposePush), &constants) {}
+
+Result<void> PointLightCache::resize(vk::Device& device, PointLayout layout, bool lobes) {
+  LIMN_CHECK(layout.count() > 0);
+  if (!m_counters)
+    if (auto made = makeCounters(device); !made) return made;
+  if (m_light && layout == m_layout && lobes == m_lobesKept) return {};
+  const size_t count = layout.count();
+  auto light = makeBuffer(device, "points.light", count * sizeof(shared::PointLight));
+  if (!light) return light.error();
+  auto radiance = makeBuffer(device, "points.radiance", count * 2 * sizeof(glm::vec4), true);
+  if (!radiance) return radiance.error();
+  auto kept = makeBuffer(device, "points.lobes", (lobes ? count : 1) * sizeof(shared::PointLobes));
+  if (!kept) return kept.error();
+  m_light = light.take();
+  m_radiance = radiance.take();
+  m_lobes = kept.take();
+  m_layout = layout;
+  m_lobesKept = lobes;
+  return {};
+}
+
+Result<void> PointLightCache::makeCounters(vk::Device& device) {
+  vk::BufferDesc desc;
+  desc.owner = "point-light";
+  desc.name = "points.counters";
+  desc.size = shared::kCounterWords * sizeof(uint32_t);
+  desc.memory = vk::MemoryKind::readback;
+  auto counters = vk::Buffer::create(device, desc);
+  if (!counters) return counters.error();
+  m_counters = counters.take();
+  return vk::fill(device, m_counters, 0, desc.size, 0);
+}
+
+std::vector<vk::Binding> PointLightCache::relightBindings(const PointLightContext& context) const {
+  auto all = gpu::joined(context.scene.bindings(), context.points);
+  return gpu::joined(std::move(all), {vk::texel(BINDING_BVH_NODES, context.bvh.nodes()),
+                                      vk::texel(BINDING_BVH_TRIANGLES, context.bvh.triangles()),
+                                      vk::storage(BINDING_POINT_LIGHT, m_light), vk::storage(BINDING_POINT_LOBES, m_lobes),
+                                      vk::storage(BINDING_COUNTERS, m_counters)});
+}
+
+std::vector<vk::Binding> PointLightCache::composeBindings(const PointLightContext& context) const {
+  auto all = gpu::joined(context.scene.bindings(), context.points);
+  return gpu::joined(std::move(all), {vk::storage(BINDING_POINT_LIGHT, m_light), vk::storage(BINDING_POINT_LOBES, m_lobes),
+                                      vk::storage(BINDING_POINT_RADIANCE_OUT, m_radiance)});
+}
+
+Result<void> PointLightCache::prepare(const PointLightContext& context, const SceneNeeds& needs, bool mayCompile) {
+  LIMN_CHECK(bool(m_light));
+  if (auto done = m_relight.prepare(context.device, relightBindings(context), needs, mayCompile); !done) return done;
+  return m_compose.prepare(context.device, composeBindings(context), needs, mayCompile);
+}
+
+void PointLightCache::recordClear(vk::CommandRecorder& recorder) const {
+  for (const vk::Buffer* buffer : {&m_light, &m_radiance, &m_lobes}) recorder.fillBuffer(*buffer, 0, 0, 0);
+  recorder.barrier();
+}
+
+void PointLightCache::recordRelight(vk::CommandRecorder& recorder, const PointLightContext& context, const RelightWork& work) const {
+  LIMN_CHECK(work.slots.first <= work.slots.end && work.slots.end <= m_layout.clusterSize && work.samples > 0);
+  const uint32_t slotCount = work.slots.end - work.slots.first;
+  const uint32_t owners = m_lobesKept ? lobeLights(context.scene.lights()) : 0;
+  const auto all = relightBindings(context);
+  for (uint32_t done = 0; done < work.samples && slotCount > 0;) {
+    const uint32_t samples = std::min(work.samples - done, shared::kRelightSamplesMost);
+    const shared::RelightPush push{work.slots.first, slotCount, m_layout.clusterCount,     m_layout.clusterSize,
+                                   samples,          work.samplesBefore + done, work.seed, m_lobesKept, owners};
+    m_relight->record(recorder, all, push, workgroups(slotCount * m_layout.clusterCount));
+    recorder.barrier();
+    done += samples;
+  }
+}
+
+void PointLightCache::recordCompose(vk::CommandRecorder& recorder, const PointLightContext& context, SlotRange slots) const {
+  LIMN_CHECK(slots.first <= slots.end && slots.end <= m_layout.clusterSize);
+  const uint32_t slotCount = slots.end - slots.first;
+  if (slotCount == 0) return;
+  const shared::ComposePush push{slots.first, slotCount, m_layout.clusterCount, m_layout.clusterSize, m_lobesKept};
+  m_compose->record(recorder, composeBindings(context), push, workgroups(slotCount * m_layout.clusterCount));
+  recorder.barrier();
+}
+
+std::vector<vk::Binding> PointLightCache::bindings() const {
+  return {vk::storage(BINDING_POINT_LIGHT, m_light), vk::texel(BINDING_POINT_RADIANCE, m_radiance),
+          vk::storage(BINDING_POINT_LOBES, m_lobes)};
+}
+
+uint64_t PointLightCache::raysTraced() const {
+  if (!m_counters) return 0;
+  const auto words = m_counters.as<uint32_t>();
+  return uint64_t(words[shared::kCounterRays]) | uint64_t(words[shared::kCounterRays + 1]) << 32;
+}
+
+uint64_t PointLightCache::discardedSamples() const {
+  return m_counters ? m_counters.as<uint32_t>()[shared::kCounterDiscarded] : 0;
+}
+
+}  // namespace limn

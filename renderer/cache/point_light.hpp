@@ -1,0 +1,90 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "renderer/gpu/device_scene.hpp"
+#include "renderer/gpu/tailored_pass.hpp"
+#include "renderer/scene/scene_needs.hpp"
+#include "renderer/visibility/bvh.hpp"
+
+namespace limn {
+
+/// Whether any surface in use reflects so much without scattering that points keep glossy lobes: kLobeReflectance.
+bool hasGlossySources(const Scene& scene);
+
+/// What lighting the points reads.
+struct PointLightContext {
+  vk::Device& device;
+  const gpu::DeviceScene& scene;
+  const SceneBvh& bvh;
+  std::vector<vk::Binding> points;  ///< BINDING_POINT_SITES among them; the same kinds at every call
+};
+
+/// Points are stored cluster by cluster: point = cluster * clusterSize + slot.
+struct PointLayout {
+  uint32_t clusterCount = 0, clusterSize = 0;
+  uint32_t count() const { return clusterCount * clusterSize; }
+  bool operator==(const PointLayout&) const = default;
+};
+
+/// The slots [first, end) of every cluster: a spread-out part of all points.
+struct SlotRange {
+  uint32_t first = 0, end = 0;
+};
+
+/// One share of next-event samples of points.
+struct RelightWork {
+  SlotRange slots;
+  uint32_t samples = 1;        ///< taken of every point now
+  uint32_t samplesBefore = 0;  ///< taken of the same points since the light changed; 0 replaces what they hold
+  uint32_t seed = 0;
+};
+
+/// The light at surface points: irradiance of both sides, kept free of the surface's colours, the diffuse radiance that
+/// leaves, and up to 4 glossy lobes where the scene has glossy sources. [IPP §4] Every point is lit by rays; what comes out
+/// depends on scene, seed and numbers of samples alone. A sample that is not finite counts as one without light. Render thread.
+class PointLightCache {
+ public:
+  PointLightCache();
+
+  /// Makes room; contents are undefined until recordClear(). Nothing happens where the room is right already. Errors: "limit",
+  /// "out-of-memory", "device-lost".
+  Result<void> resize(vk::Device& device, PointLayout layout, bool lobes);
+
+  /// Pipelines for what the scene needs, compiled and warm; made the first time and where `mayCompile` says that a stop is
+  /// no matter. After resize(). Errors: "device", "out-of-memory", "device-lost".
+  Result<void> prepare(const PointLightContext& context, const SceneNeeds& needs, bool mayCompile);
+
+  /// Sets all light to zero, that of gathers too.
+  void recordClear(vk::CommandRecorder& recorder) const;
+
+  /// Takes direct-light samples of the points and adds them to their means; indirect light stays. Ends with a barrier.
+  void recordRelight(vk::CommandRecorder& recorder, const PointLightContext& context, const RelightWork& work) const;
+
+  /// Writes POINT_RADIANCE of the slots from POINT_LIGHT and the materials. Ends with a barrier.
+  void recordCompose(vk::CommandRecorder& recorder, const PointLightContext& context, SlotRange slots) const;
+
+  /// POINT_LIGHT, POINT_RADIANCE (texel) and POINT_LOBES, for gathers. Without lobes the last is a dummy of one point.
+  std::vector<vk::Binding> bindings() const;
+  bool hasLobes() const { return m_lobesKept; }
+  const PointLayout& layout() const { return m_layout; }
+  const vk::Buffer& light() const { return m_light; }        ///< shared::PointLight, one a point
+  const vk::Buffer& radiance() const { return m_radiance; }  ///< vec4, two a point
+  const vk::Buffer& lobes() const { return m_lobes; }        ///< shared::PointLobes
+
+  /// Since the cache was made; up to date once the device has done what was recorded.
+  uint64_t raysTraced() const;
+  uint64_t discardedSamples() const;
+
+ private:
+  Result<void> makeCounters(vk::Device& device);
+  std::vector<vk::Binding> relightBindings(const PointLightContext& context) const;
+  std::vector<vk::Binding> composeBindings(const PointLightContext& context) const;
+
+  PointLayout m_layout;
+  bool m_lobesKept = false;
+  vk::Buffer m_light, m_radiance, m_lobes, m_counters;
+  gpu::TailoredPass m_relight, m_compose;
+};
+
+}  // namespace limn

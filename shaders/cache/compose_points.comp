@@ -1,0 +1,71 @@
+// The light that leaves surface points, as gathers read it: what arrives times the reflectance, both sides. One invocation
+// a point.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/shared/bvh_shared.h"
+#include "shaders/shared/point_shared.h"
+#include "shaders/shared/relight_shared.h"
+#include "shaders/lib/scene_bindings.glsl"
+#include "shaders/lib/bsdf.glsl"
+
+layout(constant_id = 16) const bool kUseLobes = true;
+
+layout(local_size_x = 64) in;
+layout(binding = BINDING_POINT_SITES, scalar) readonly buffer Sites { PointSite pointSites[]; };
+layout(binding = BINDING_POINT_LIGHT, scalar) readonly buffer Light { PointLight pointLight[]; };
+layout(binding = BINDING_POINT_LOBES, scalar) readonly buffer Lobes { PointLobes pointLobes[]; };
+layout(binding = BINDING_POINT_RADIANCE_OUT, scalar) writeonly buffer Radiance { vec4 pointRadiance[]; };
+layout(push_constant, scalar) uniform Push { ComposePush push; };
+
+// Shares of arriving light that leave again.
+struct Reflectances {
+  vec3 diffuse;      // on the same side
+  vec3 specular;     // on the same side, by microfacets
+  vec3 transmitted;  // on the other side
+};
+
+// Mean over the hemisphere of what single scattering by GGX microfacets keeps, all of them reflecting fully; within 0.005 of
+// the integral of ggx.glsl's functions.
+float meanGgxAlbedo(float alpha) { return 1.0 / (1.0 + 1.43 * pow(alpha, 1.73)); }
+
+// Mean of Schlick's Fresnel term over the cosine-weighted hemisphere.
+vec3 meanSchlick(vec3 f0, float f90) { return f0 + (f90 - f0) * (1.0 / 21.0); }
+
+Reflectances reflectancesOf(Surface s) {
+  Bsdf f = makeBsdf(s, s.normal);
+  float under = underClearcoat(f, s.clearcoatNormal);
+  float body = max((1.0 - s.metallic) * (1.0 - maxComponent(dielectricFresnel(f, 1.0))) * under, 0.0);
+  Reflectances r;
+  r.diffuse = s.baseColor * (body * (1.0 - s.transmission));
+  r.transmitted = kUseTransmission ? s.baseColor * (body * s.transmission) : vec3(0.0);
+  vec3 mean = mix(meanSchlick(f.dielectricF0, f.dielectricF90), meanSchlick(s.baseColor, 1.0), s.metallic);
+  r.specular = kUseSpecular ? mean * (under * meanGgxAlbedo(s.alpha)) + (1.0 - under) : vec3(0.0);
+  return r;
+}
+
+// Lobes give the glossy reflection of direct light; all else that microfacets reflect or let pass leaves diffusely, so that
+// no energy is lost.
+vec3 leaving(Reflectances r, vec3 direct, vec3 indirect, vec3 behind, bool hasLobes) {
+  return r.diffuse * (direct + indirect) + r.specular * (hasLobes ? indirect : direct + indirect) + r.transmitted * behind;
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= push.slotCount * push.clusterCount) return;
+  uint point = i / push.slotCount * push.clusterSize + push.firstSlot + i % push.slotCount;
+  PointSite site = pointSites[point];
+  Surface s = makeSurface(site.triangle, site.barycentrics, vec3(0.0));  // no viewer: the front, its normal not bent
+  vec3 front = s.baseColor, back = s.baseColor;
+  bool hasLobes = false;
+  if ((s.flags & kMaterialUnlit) == 0u) {
+    if (kUseLobes && push.lobes != 0u) hasLobes = pointLobes[point].alpha > 0.0;
+    PointLight light = pointLight[point];
+    Reflectances r = reflectancesOf(s);
+    front = leaving(r, light.directFront, light.indirectFront, light.directBack + light.indirectBack, hasLobes);
+    back = leaving(r, light.directBack, light.indirectBack, light.directFront + light.indirectFront, hasLobes);
+  }
+  float w = hasLobes ? 1.0 : 0.0;
+  pointRadiance[2u * point] = vec4(front, w);
+  pointRadiance[2u * point + 1u] = vec4(back, w);
+}
