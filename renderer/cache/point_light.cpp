@@ -12,9 +12,9 @@
 namespace limn {
 namespace {
 
-constexpr uint32_t kWorkgroup = 64;       // of the shaders
-constexpr size_t kLobesConstant = 16;     // constant_id of kUseLobes in the shaders
-constexpr uint32_t kSampledLobes = 1;     // lobes left to lights that own none
+constexpr uint32_t kWorkgroup = 64;    // of the shaders
+constexpr size_t kLobesConstant = 16;  // constant_id of kUseLobes in the shaders
+constexpr uint32_t kSampledLobes = 1;  // lobes left to lights that own none
 
 uint32_t workgroups(uint32_t invocations) { return (invocations + kWorkgroup - 1) / kWorkgroup; }
 
@@ -106,16 +106,18 @@ Result<void> PointLightCache::makeCounters(vk::Device& device) {
 
 std::vector<vk::Binding> PointLightCache::relightBindings(const PointLightContext& context) const {
   auto all = gpu::joined(context.scene.bindings(), context.points);
-  return gpu::joined(std::move(all), {vk::texel(BINDING_BVH_NODES, context.bvh.nodes()),
-                                      vk::texel(BINDING_BVH_TRIANGLES, context.bvh.triangles()),
-                                      vk::storage(BINDING_POINT_LIGHT, m_light), vk::storage(BINDING_POINT_LOBES, m_lobes),
-                                      vk::storage(BINDING_COUNTERS, m_counters)});
+  return gpu::joined(
+      std::move(all),
+      {vk::texel(BINDING_BVH_NODES, context.bvh.nodes()), vk::texel(BINDING_BVH_TRIANGLES, context.bvh.triangles()),
+       vk::storage(BINDING_POINT_LIGHT, m_light), vk::storage(BINDING_POINT_LOBES, m_lobes),
+       vk::storage(BINDING_COUNTERS, m_counters)});
 }
 
 std::vector<vk::Binding> PointLightCache::composeBindings(const PointLightContext& context) const {
   auto all = gpu::joined(context.scene.bindings(), context.points);
-  return gpu::joined(std::move(all), {vk::storage(BINDING_POINT_LIGHT, m_light), vk::storage(BINDING_POINT_LOBES, m_lobes),
-                                      vk::storage(BINDING_POINT_RADIANCE_OUT, m_radiance)});
+  return gpu::joined(std::move(all),
+                     {vk::storage(BINDING_POINT_LIGHT, m_light), vk::storage(BINDING_POINT_LOBES, m_lobes),
+                      vk::storage(BINDING_POINT_RADIANCE_OUT, m_radiance)});
 }
 
 Result<void> PointLightCache::prepare(const PointLightContext& context, const SceneNeeds& needs, bool mayCompile) {
@@ -129,22 +131,31 @@ void PointLightCache::recordClear(vk::CommandRecorder& recorder) const {
   recorder.barrier();
 }
 
-void PointLightCache::recordRelight(vk::CommandRecorder& recorder, const PointLightContext& context, const RelightWork& work) const {
+void PointLightCache::recordRelight(vk::CommandRecorder& recorder, const PointLightContext& context,
+                                    const RelightWork& work) const {
   LIMN_CHECK(work.slots.first <= work.slots.end && work.slots.end <= m_layout.clusterSize && work.samples > 0);
   const uint32_t slotCount = work.slots.end - work.slots.first;
   const uint32_t owners = m_lobesKept ? lobeLights(context.scene.lights()) : 0;
   const auto all = relightBindings(context);
   for (uint32_t done = 0; done < work.samples && slotCount > 0;) {
     const uint32_t samples = std::min(work.samples - done, shared::kRelightSamplesMost);
-    const shared::RelightPush push{work.slots.first, slotCount, m_layout.clusterCount,     m_layout.clusterSize,
-                                   samples,          work.samplesBefore + done, work.seed, m_lobesKept, owners};
+    const shared::RelightPush push{work.slots.first,
+                                   slotCount,
+                                   m_layout.clusterCount,
+                                   m_layout.clusterSize,
+                                   samples,
+                                   work.samplesBefore + done,
+                                   work.seed,
+                                   m_lobesKept,
+                                   owners};
     m_relight->record(recorder, all, push, workgroups(slotCount * m_layout.clusterCount));
     recorder.barrier();
     done += samples;
   }
 }
 
-void PointLightCache::recordCompose(vk::CommandRecorder& recorder, const PointLightContext& context, SlotRange slots) const {
+void PointLightCache::recordCompose(vk::CommandRecorder& recorder, const PointLightContext& context,
+                                    SlotRange slots) const {
   LIMN_CHECK(slots.first <= slots.end && slots.end <= m_layout.clusterSize);
   const uint32_t slotCount = slots.end - slots.first;
   if (slotCount == 0) return;

@@ -41,18 +41,19 @@ struct RelightWork {
 };
 
 /// The light at surface points: irradiance of both sides, kept free of the surface's colours, the diffuse radiance that
-/// leaves, and up to 4 glossy lobes where the scene has glossy sources. [IPP §4] Every point is lit by rays; what comes out
-/// depends on scene, seed and numbers of samples alone. A sample that is not finite counts as one without light. Render thread.
+/// leaves, and up to 4 glossy lobes where the scene has glossy sources. [IPP §4] Every point is lit by rays; what comes
+/// out depends on scene, seed and numbers of samples alone. A sample that is not finite counts as one without light.
+/// Render thread.
 class PointLightCache {
  public:
   PointLightCache();
 
-  /// Makes room; contents are undefined until recordClear(). Nothing happens where the room is right already. Errors: "limit",
-  /// "out-of-memory", "device-lost".
+  /// Makes room; contents are undefined until recordClear(). Nothing happens where the room is right already. Errors:
+  /// "limit", "out-of-memory", "device-lost".
   Result<void> resize(vk::Device& device, PointLayout layout, bool lobes);
 
-  /// Pipelines for what the scene needs, compiled and warm; made the first time and where `mayCompile` says that a stop is
-  /// no matter. After resize(). Errors: "device", "out-of-memory", "device-lost".
+  /// Pipelines for what the scene needs, compiled and warm; made the first time and where `mayCompile` says that a stop
+  /// is no matter. After resize(). Errors: "device", "out-of-memory", "device-lost".
   Result<void> prepare(const PointLightContext& context, const SceneNeeds& needs, bool mayCompile);
 
   /// Sets all light to zero, that of gathers too.

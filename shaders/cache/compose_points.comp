@@ -1,5 +1,5 @@
-// The light that leaves surface points, as gathers read it: what arrives times the reflectance, both sides. One invocation
-// a point.
+// The light that leaves surface points, as gathers read it: what arrives times the reflectance, both sides. One
+// invocation a point.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -25,8 +25,8 @@ struct Reflectances {
   vec3 transmitted;  // on the other side
 };
 
-// Mean over the hemisphere of what single scattering by GGX microfacets keeps, all of them reflecting fully; within 0.005 of
-// the integral of ggx.glsl's functions.
+// Mean over the hemisphere of what single scattering by GGX microfacets keeps, all of them reflecting fully; within
+// 0.005 of the integral of ggx.glsl's functions.
 float meanGgxAlbedo(float alpha) { return 1.0 / (1.0 + 1.43 * pow(alpha, 1.73)); }
 
 // Mean of Schlick's Fresnel term over the cosine-weighted hemisphere.
@@ -44,10 +44,11 @@ Reflectances reflectancesOf(Surface s) {
   return r;
 }
 
-// Lobes give the glossy reflection of direct light; all else that microfacets reflect or let pass leaves diffusely, so that
-// no energy is lost.
+// Lobes give the glossy reflection of direct light; all else that microfacets reflect or let pass leaves diffusely, so
+// that no energy is lost.
 vec3 leaving(Reflectances r, vec3 direct, vec3 indirect, vec3 behind, bool hasLobes) {
-  return r.diffuse * (direct + indirect) + r.specular * (hasLobes ? indirect : direct + indirect) + r.transmitted * behind;
+  vec3 all = direct + indirect;
+  return r.diffuse * all + r.specular * (hasLobes ? indirect : all) + r.transmitted * behind;
 }
 
 void main() {

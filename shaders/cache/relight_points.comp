@@ -44,8 +44,8 @@ void beginLobes(uint point, Surface s) {
   for (uint i = 0u; i < kLobesPerPoint; ++i) pointLobes[point].lobe[i] = PointLobe(0u, 0u);
 }
 
-// Turn `turn` of the point's light: first those lights that own a lobe, whole; then samples of all lights. A sample of a light
-// that owns a lobe adds to the diffuse light alone, any other fills one of the lobes left, in equal shares.
+// Turn `turn` of the point's light: first those lights that own a lobe, whole; then samples of all lights. A sample of a
+// light that owns a lobe adds to the diffuse light alone, any other fills one of the lobes left, in equal shares.
 void addTurn(uint point, Surface s, uint turn, inout SideLight sum, inout uint discarded) {
   bool whole = turn < push.lobeLights;
   uint sampleIndex = push.samplesBefore + turn - push.lobeLights;
@@ -67,7 +67,8 @@ void addTurn(uint point, Surface s, uint turn, inout SideLight sum, inout uint d
   if (!kUseLobes || push.lobes == 0u || turn >= kLobesPerPoint) return;
   float share = whole ? lights[index].probability : 1.0 / float(min(push.samples, kLobesPerPoint - push.lobeLights));
   bool shines = maxComponent(arriving) > 0.0 && (whole || index >= push.lobeLights);
-  pointLobes[point].lobe[turn] = PointLobe(shines ? octEncode(light.dirW) : 0u, shines ? packRgbe(arriving * share) : 0u);
+  pointLobes[point].lobe[turn] =
+      PointLobe(shines ? octEncode(light.dirW) : 0u, shines ? packRgbe(arriving * share) : 0u);
 }
 
 void main() {
