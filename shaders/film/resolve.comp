@@ -3,10 +3,12 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/film.glsl"
+#include "shaders/shared/gather_shared.h"
 #include "shaders/lib/tone_map.glsl"
 
 layout(local_size_x = 16, local_size_y = 16) in;
 layout(binding = BINDING_OUTPUT, scalar) writeonly buffer Output { uint outputRgba[]; };
+layout(binding = BINDING_INDIRECT, scalar) readonly buffer Indirect { IndirectTexel indirect[]; };
 layout(push_constant, scalar) uniform Push { ResolvePush push; };
 
 vec3 valueOf(uint pixel) {
@@ -50,12 +52,25 @@ vec3 fill(ivec2 p) {
   return whole ? fine : coarse;
 }
 
+// Green where a pixel has gathered for itself, orange where it was interpolated. [IPP fig. 5]
+vec3 tinted(vec3 color, uint pixel) {
+  bool own = filmMean[pixel].w > 0.0, interpolated = !own;
+  if (push.view == kViewPlacement) {
+    own = indirect[pixel].state == kIndirectSampled;
+    interpolated = indirect[pixel].state == kIndirectInterpolated;
+  }
+  vec3 tint = own ? vec3(0.05, 0.8, 0.1) : vec3(1.0, 0.3, 0.0);
+  return mix(color, tint, own || interpolated ? 0.5 : 0.0);
+}
+
 void main() {
   ivec2 p = ivec2(gl_GlobalInvocationID.xy);
   if (p.x >= int(push.width) || p.y >= int(push.height)) return;
   uint pixel = pixelAt(p);
-  vec3 color = filmMean[pixel].w > 0.0 || push.stride == 0u ? valueOf(pixel) : fill(p);
-  bool radiance = push.view <= kViewIndirect;
+  bool sampled = filmMean[pixel].w > 0.0;  // where not, the planes hold an older picture
+  vec3 color = sampled ? valueOf(pixel) : push.stride > 0u ? fill(p) : vec3(0.0);
+  bool placement = push.view >= kViewPlacement, radiance = push.view <= kViewIndirect || placement;
   color = radiance ? toneMap(max(color, vec3(0.0)) * push.exposure, push.toneMap) : color;
+  if (placement) color = tinted(clamp(color, 0.0, 1.0), pixel);
   outputRgba[pixel] = packUnorm4x8(vec4(linearToSrgb(color), 1.0));
 }
