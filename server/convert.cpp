@@ -98,6 +98,7 @@ struct EditReader {
     SetResolve set;
     set.exposure = wire.exposure;
     if (wire.toneMap) set.toneMap = same<ToneMap>(*wire.toneMap);
+    if (wire.view) set.view = same<ResolveView>(*wire.view);
     return set;
   }
   Edit operator()(const protocol::ImageEdit& wire) const { return SetImageSize{wire.width, wire.height}; }

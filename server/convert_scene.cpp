@@ -108,7 +108,8 @@ protocol::SceneMessage toWire(const SceneSummary& scene, protocol::SceneCause ca
   for (const Camera& c : scene.cameras) wire.cameras.push_back({c.name, c.perspective, c.yfov, c.ymag, c.znear});
   wire.environment = {array(scene.environment.radiance), scene.environment.rotation, scene.environment.image != kNone};
   wire.view = toWire(scene.view);
-  wire.resolve = {scene.resolve.exposure, protocol::ToneMap(uint32_t(scene.resolve.toneMap))};
+  wire.resolve = {scene.resolve.exposure, protocol::ToneMap(uint32_t(scene.resolve.toneMap)),
+                  protocol::ResolveView(uint32_t(scene.resolve.view))};
   wire.technique = scene.technique;
   wire.parameters = scene.parameters;
   wire.width = scene.width;

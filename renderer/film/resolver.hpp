@@ -4,7 +4,6 @@
 #include "renderer/film/film.hpp"
 #include "renderer/gpu/pass.hpp"
 #include "renderer/scene/edit.hpp"
-#include "shaders/shared/film_shared.h"
 
 namespace limn {
 
@@ -16,13 +15,15 @@ class Resolver {
   /// For a film of another size. Nothing is compiled.
   Result<void> resize(vk::Device& device, const Film& film);
   /// RGBA8, sRGB-encoded, row 0 on top. `stride` is the grid on which every pixel has a sample [pixel]; 0: no filling.
-  /// `view` is one of shared::kView... . Waits for the device.
-  Result<std::vector<uint8_t>> resolve(vk::Device& device, const Film& film, const ResolveSettings& settings, uint32_t stride,
-                                       uint32_t view = shared::kViewBeauty);
+  /// `indirect` holds a shared::IndirectTexel of every pixel, whose states the view `placement` shows; null where nothing is
+  /// interpolated. Waits for the device.
+  Result<std::vector<uint8_t>> resolve(vk::Device& device, const Film& film, const ResolveSettings& settings,
+                                       uint32_t stride, const vk::Buffer* indirect = nullptr);
 
  private:
   gpu::Pass m_pass;
   vk::Buffer m_output;
+  vk::Buffer m_noIndirect;  ///< bound where nothing is interpolated
 };
 
 }  // namespace limn

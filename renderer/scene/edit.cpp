@@ -11,6 +11,17 @@ namespace {
 
 constexpr const char* kCostNames[] = {"none", "display-only", "relight", "re-gather", "rebuild", "reload"};
 constexpr const char* kToneMapNames[] = {"pbr-neutral", "aces", "agx", "linear"};
+constexpr const char* kResolveViewNames[] = {"beauty", "direct", "indirect", "albedo",
+                                             "normal", "depth",  "samples",  "placement"};
+
+/// The enumerator of a name, its place in `names`.
+template <class E, size_t N>
+std::optional<E> fromName(const char* const (&names)[N], std::string_view name) {
+  for (size_t i = 0; i < N; ++i) {
+    if (name == names[i]) return E(i);
+  }
+  return std::nullopt;
+}
 
 template <class T, class V>
 void assign(T& field, const std::optional<V>& value) {
@@ -107,6 +118,7 @@ class Batch {
   void operator()(const SetResolve& e) {
     assign(m_resolve.exposure, e.exposure);
     assign(m_resolve.toneMap, e.toneMap);
+    assign(m_resolve.view, e.view);
   }
   void operator()(const SetTechnique&) {}
   void operator()(const SetImageSize&) {}
@@ -167,12 +179,11 @@ class Batch {
 
 const char* costClassName(CostClass cost) { return kCostNames[size_t(cost)]; }
 const char* toneMapName(ToneMap map) { return kToneMapNames[size_t(map)]; }
+const char* resolveViewName(ResolveView view) { return kResolveViewNames[size_t(view)]; }
 
-std::optional<ToneMap> toneMapFromName(std::string_view name) {
-  for (size_t i = 0; i < std::size(kToneMapNames); ++i) {
-    if (name == kToneMapNames[i]) return ToneMap(i);
-  }
-  return std::nullopt;
+std::optional<ToneMap> toneMapFromName(std::string_view name) { return fromName<ToneMap>(kToneMapNames, name); }
+std::optional<ResolveView> resolveViewFromName(std::string_view name) {
+  return fromName<ResolveView>(kResolveViewNames, name);
 }
 
 bool ChangeSet::empty() const {

@@ -17,10 +17,16 @@ enum class ToneMap : uint32_t { pbrNeutral, aces, agx, linear };
 std::optional<ToneMap> toneMapFromName(std::string_view name);  ///< "pbr-neutral", "aces", "agx", "linear"
 const char* toneMapName(ToneMap map);
 
+/// What of the film is shown. Beauty, direct and indirect are radiance and tone-mapped.
+enum class ResolveView : uint32_t { beauty, direct, indirect, albedo, normal, depth, samples, placement };
+std::optional<ResolveView> resolveViewFromName(std::string_view name);
+const char* resolveViewName(ResolveView view);  ///< "beauty", "direct", ...
+
 /// How radiance becomes display values; never restarts sampling.
 struct ResolveSettings {
   float exposure = 0.0f;            ///< [EV], radiance is multiplied by 2^exposure
   ToneMap toneMap = ToneMap::pbrNeutral;
+  ResolveView view = ResolveView::beauty;
   bool operator==(const ResolveSettings&) const = default;
 };
 
@@ -56,6 +62,7 @@ struct SetView { View view; };
 struct SetResolve {
   std::optional<float> exposure;
   std::optional<ToneMap> toneMap;
+  std::optional<ResolveView> view;
 };
 /// Technique and its parameters by announced name; the session checks them against the registry.
 struct SetTechnique {

@@ -134,6 +134,7 @@ struct Validator {
   void operator()(const SetResolve& e) {
     check.range(e.exposure, -kMaxExposure, kMaxExposure, "exposure");
     if (e.toneMap) check.require(*e.toneMap <= ToneMap::linear, "toneMap", "unknown tone map");
+    if (e.view) check.require(*e.view <= ResolveView::placement, "view", "unknown view");
   }
 
   void operator()(const SetTechnique&) {}

@@ -60,7 +60,7 @@ Result<void> Session::Impl::estimateError() {
 
 Result<std::shared_ptr<const Frame>> Session::Impl::makeFrame() {
   const double begin = nowSeconds();
-  auto rgba = resolver->resolve(device, *film, resolve, progress.passes > 0 ? 0 : progress.fillStride);
+  auto rgba = resolver->resolve(device, *film, resolve, progress.passes > 0 ? 0 : progress.fillStride, technique->indirect());
   if (!rgba) return rgba.error();
   const double end = nowSeconds();
   auto frame = std::make_shared<Frame>();

@@ -60,6 +60,8 @@ class Technique {
   /// Passes of work that ran, and those that the scene did not need, for the statistics.
   virtual std::vector<std::string> ran() const = 0;
   virtual std::vector<std::string> leftOut() const = 0;
+  /// A shared::IndirectTexel of every pixel, whose states say which pixels were gathered for themselves; null where all are.
+  virtual const vk::Buffer* indirect() const { return nullptr; }
   /// Rays traced and samples discarded since the process began.
   virtual uint64_t raysTraced() const = 0;
   virtual uint64_t discardedSamples() const = 0;

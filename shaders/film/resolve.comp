@@ -11,12 +11,15 @@ layout(binding = BINDING_OUTPUT, scalar) writeonly buffer Output { uint outputRg
 layout(binding = BINDING_INDIRECT, scalar) readonly buffer Indirect { IndirectTexel indirect[]; };
 layout(push_constant, scalar) uniform Push { ResolvePush push; };
 
+// Near is bright. Rays that left the scene count 0 in the mean depth; the share of hits undoes that.
+float viewedDepth(float meanDepth, float hits) { return hits > 0.0 ? 1.0 / (1.0 + meanDepth / hits) : 0.0; }
+
 vec3 valueOf(uint pixel) {
   if (push.view == kViewDirect) return filmDirect[pixel].rgb;
   if (push.view == kViewIndirect) return filmMean[pixel].rgb - filmDirect[pixel].rgb;
   if (push.view == kViewAlbedo) return filmAlbedo[pixel].rgb;
   if (push.view == kViewNormal) return filmNormal[pixel].rgb * 0.5 + 0.5;
-  if (push.view == kViewDepth) return vec3(1.0 / (1.0 + filmAlbedo[pixel].w));
+  if (push.view == kViewDepth) return vec3(viewedDepth(filmAlbedo[pixel].w, filmNormal[pixel].w));
   if (push.view == kViewSamples) return vec3(filmMean[pixel].w / 256.0);
   return filmMean[pixel].rgb;
 }

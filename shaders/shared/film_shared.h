@@ -29,6 +29,8 @@ LIMN_CONST_UINT(kViewAlbedo, 3u);
 LIMN_CONST_UINT(kViewNormal, 4u);
 LIMN_CONST_UINT(kViewDepth, 5u);
 LIMN_CONST_UINT(kViewSamples, 6u);
+LIMN_CONST_UINT(kViewPlacement, 7u);   // the picture, tinted by IndirectTexel.state
+LIMN_CONST_UINT(kViewOwnSamples, 8u);  // the same where nothing is interpolated: tinted by whether a pixel has samples
 
 struct ResolvePush {
   uint width;       // [pixel]
@@ -36,7 +38,7 @@ struct ResolvePush {
   uint stride;      // pixels without samples are filled from the grid of every stride-th pixel
   uint toneMap;     // limn::ToneMap
   float exposure;   // factor on radiance
-  uint view;        // kView...
+  uint view;        // limn::ResolveView as kView...
 };
 LIMN_ASSERT_SIZE(ResolvePush, 24);
 

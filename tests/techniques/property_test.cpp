@@ -90,7 +90,7 @@ Edit anyEdit(Dice& dice, const Scene& scene) {
     case 5: case 6: return nodeEdit(dice, scene);
     case 7: return SetEnvironment{dice.maybe(dice.chance(3) ? glm::vec3(0.0f) : dice.color()), dice.maybe(dice.real(-4, 4))};
     case 8: return viewEdit(dice, scene);
-    case 9: return SetResolve{dice.real(-3, 3), ToneMap(dice.below(4))};
+    case 9: return SetResolve{dice.real(-3, 3), ToneMap(dice.below(4)), ResolveView(dice.below(8))};
     case 10: return SetImageSize{16 + 4 * dice.below(9), 16 + 4 * dice.below(9)};
     default: return techniqueEdit(dice);
   }

@@ -77,6 +77,7 @@ std::vector<Row> rows() {
   return {
       {"Exposure", with<SetResolve>([](auto& e) { e.exposure = 1.0f; }), CostClass::displayOnly, 0},
       {"ToneMap", with<SetResolve>([](auto& e) { e.toneMap = ToneMap::aces; }), CostClass::displayOnly, 0},
+      {"View", with<SetResolve>([](auto& e) { e.view = ResolveView::indirect; }), CostClass::displayOnly, 0},
       {"LightColor", with<SetLight>([&](auto& e) { e.light = r.point; e.color = glm::vec3(0.5f); }), CostClass::relight, 0},
       {"LightIntensity", with<SetLight>([&](auto& e) { e.light = r.spot; e.intensity = 5.0f; }), CostClass::relight, 0},
       {"Environment", with<SetEnvironment>([](auto& e) { e.radiance = glm::vec3(0.1f); }), CostClass::relight, 0},

@@ -224,6 +224,14 @@ TEST(EditCost, ToneMapNamesGoBothWays) {
   EXPECT_FALSE(toneMapFromName("filmic").has_value());
 }
 
+TEST(EditCost, ViewNamesGoBothWays) {
+  for (uint32_t i = 0; i <= uint32_t(ResolveView::placement); ++i) {
+    EXPECT_EQ(resolveViewFromName(resolveViewName(ResolveView(i))), ResolveView(i));
+  }
+  EXPECT_STREQ(resolveViewName(ResolveView::indirect), "indirect");
+  EXPECT_FALSE(resolveViewFromName("camera").has_value());
+}
+
 TEST(EditValidate, IndicesOutOfRange) {
   EXPECT_EQ(complaint(SetMaterial{.material = 2}), "material");
   EXPECT_EQ(complaint(SetLight{.light = 2}), "light");
@@ -288,6 +296,7 @@ TEST(EditValidate, EnvironmentViewAndResolve) {
   EXPECT_EQ(complaint(lens), "ymag");
   EXPECT_EQ(complaint(SetResolve{.exposure = 100.0f}), "exposure");
   EXPECT_EQ(complaint(SetResolve{.toneMap = ToneMap(9)}), "toneMap");
+  EXPECT_EQ(complaint(SetResolve{.view = ResolveView(8)}), "view");
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ export function makeScene(width = 320, height = 240) {
       ymag: 1,
       znear: 0.01,
     },
-    resolve: { exposure: 0, toneMap: 'pbr-neutral' },
+    resolve: { exposure: 0, toneMap: 'pbr-neutral', view: 'beauty' },
     technique: 'path-tracing',
     parameters: { maxBounces: 8, clampIndirect: 0, maxSamples: 64, russianRoulette: 1 },
     width,

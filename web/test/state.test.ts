@@ -20,7 +20,7 @@ const scene = {
   lights: [{ name: 'lamp', intensity: 1 }],
   nodes: [{ name: 'n', translation: [0, 0, 0] }],
   environment: { rotation: 0 },
-  resolve: { exposure: 0, toneMap: 'aces' },
+  resolve: { exposure: 0, toneMap: 'aces', view: 'beauty' },
   technique: 'path-tracing',
   parameters: { maxBounces: 8 },
   view: { yfov: 1 },
@@ -36,7 +36,7 @@ describe('Model', () => {
     expect(withEdit(scene, { target: 'technique', parameters: { maxBounces: 3 } }).parameters).toEqual({
       maxBounces: 3,
     });
-    expect(withEdit(scene, { target: 'resolve', exposure: 2 }).resolve).toEqual({ exposure: 2, toneMap: 'aces' });
+    expect(withEdit(scene, { target: 'resolve', exposure: 2 }).resolve).toEqual({ exposure: 2, toneMap: 'aces', view: 'beauty' });
   });
 
   it('keeps the selection through a description of the same scene, and drops it with another', () => {

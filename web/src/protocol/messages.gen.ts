@@ -30,6 +30,10 @@ export const kPhases: readonly Phase[] = ["coarse", "converging", "converged"];
 export type ToneMap = "pbr-neutral" | "aces" | "agx" | "linear";
 export const kToneMaps: readonly ToneMap[] = ["pbr-neutral", "aces", "agx", "linear"];
 
+/** What of the film is shown. */
+export type ResolveView = "beauty" | "direct" | "indirect" | "albedo" | "normal" | "depth" | "samples" | "placement";
+export const kResolveViews: readonly ResolveView[] = ["beauty", "direct", "indirect", "albedo", "normal", "depth", "samples", "placement"];
+
 /** glTF alphaMode. */
 export type AlphaMode = "opaque" | "mask" | "blend";
 export const kAlphaModes: readonly AlphaMode[] = ["opaque", "mask", "blend"];
@@ -129,6 +133,7 @@ export interface TechniqueEdit {
 export interface ResolveEdit {
   exposure?: number;  /** radiance is multiplied by 2^exposure [EV] */
   toneMap?: ToneMap;  /** one of those announced */
+  view?: ResolveView;  /** what is shown */
 }
 
 /** Size of the picture. */
@@ -256,6 +261,7 @@ export interface Environment {
 export interface Resolve {
   exposure: number;  /** radiance is multiplied by 2^exposure [EV] */
   toneMap: ToneMap;  /** the one in use */
+  view: ResolveView;  /** what is shown */
 }
 
 /** Something the file uses and the renderer does not support. */
@@ -603,6 +609,7 @@ const kEnums: { [name: string]: readonly string[] } = {
   CostClass: kCostClasss,
   Phase: kPhases,
   ToneMap: kToneMaps,
+  ResolveView: kResolveViews,
   AlphaMode: kAlphaModes,
   LightType: kLightTypes,
   ParameterType: kParameterTypes,
@@ -673,6 +680,7 @@ const kStructs: { [name: string]: readonly Field[] } = {
   ResolveEdit: [
     { name: "exposure", type: "f32", optional: true, min: -64, max: 64 },
     { name: "toneMap", type: "ToneMap", optional: true },
+    { name: "view", type: "ResolveView", optional: true },
   ],
   ImageEdit: [
     { name: "width", type: "u32", min: 16, max: 16384 },
@@ -776,6 +784,7 @@ const kStructs: { [name: string]: readonly Field[] } = {
   Resolve: [
     { name: "exposure", type: "f32" },
     { name: "toneMap", type: "ToneMap" },
+    { name: "view", type: "ResolveView" },
   ],
   Unsupported: [
     { name: "feature", type: "string" },
