@@ -1,0 +1,102 @@
+#include "renderer/cache/block_samples.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "renderer/base/check.hpp"
+#include "renderer/cache/block_metric.hpp"
+#include "renderer/cache/parallel_for.hpp"
+#include "renderer/cache/word_hash.hpp"
+
+namespace limn {
+namespace {
+
+const Primitive& primitiveOf(const Scene& scene, const gpu::GeometryBlock& block) {
+  return scene.meshes[block.mesh].primitives[block.primitive];
+}
+
+/// Hashes of the blocks' primitives; instances share one.
+std::vector<uint64_t> shapesOf(const Scene& scene, const std::vector<gpu::GeometryBlock>& blocks) {
+  std::map<std::pair<uint32_t, uint32_t>, uint64_t> hashes;
+  std::vector<uint64_t> shapes;
+  shapes.reserve(blocks.size());
+  for (const gpu::GeometryBlock& block : blocks) {
+    const auto [entry, isNew] = hashes.try_emplace({block.mesh, block.primitive});
+    if (isNew) {
+      const Primitive& p = primitiveOf(scene, block);
+      entry->second = hashWords(std::span(p.indices), hashWords(std::span(p.positions)));
+    }
+    shapes.push_back(entry->second);
+  }
+  return shapes;
+}
+
+/// Other points for every block, so that instances differ.
+uint32_t seedOf(uint32_t seed, size_t block) {
+  uint32_t h = seed * 0x9e3779b9u + uint32_t(block) * 0x85ebca6bu + 1u;
+  h = (h ^ h >> 16) * 0x7feb352du;
+  h = (h ^ h >> 15) * 0x846ca68bu;
+  return h ^ h >> 16;
+}
+
+}  // namespace
+
+std::vector<uint32_t> shareOut(uint32_t count, const std::vector<double>& weights) {
+  std::vector<uint32_t> shares(weights.size(), 0);
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  if (!(sum > 0.0)) return shares;
+  std::vector<double> remainders(weights.size());
+  uint64_t given = 0;
+  for (size_t i = 0; i < weights.size(); ++i) {
+    const double exact = count * (weights[i] / sum);
+    shares[i] = uint32_t(exact);
+    remainders[i] = weights[i] > 0.0 ? exact - shares[i] : -1.0;
+    given += shares[i];
+  }
+  LIMN_CHECK_LE(given, uint64_t(count));
+  std::vector<uint32_t> order(weights.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return remainders[a] > remainders[b]; });
+  for (size_t i = 0; given < count; i = (i + 1) % order.size())
+    if (weights[order[i]] > 0.0) ++shares[order[i]], ++given;
+  return shares;
+}
+
+uint32_t BlockSampling::update(const Scene& scene, const std::vector<gpu::GeometryBlock>& blocks,
+                               const std::vector<glm::dmat4>& worldFromNodes, uint32_t count, uint32_t seed) {
+  const std::vector<uint64_t> shapes = shapesOf(scene, blocks);
+  m_sources.resize(blocks.size());
+  m_areas.resize(blocks.size(), 0.0);
+  m_points.resize(blocks.size());
+
+  std::vector<uint8_t> stale(blocks.size(), 0);
+  parallelFor(blocks.size(), [&](size_t i) {
+    const Source now{shapes[i], roundedStretch(glm::dmat3(worldFromNodes[blocks[i].node])), seedOf(seed, i)};
+    if (now == m_sources[i]) return;
+    m_sources[i] = now;
+    m_areas[i] = areaOf(stretchedCorners(primitiveOf(scene, blocks[i]), now.stretch));
+    stale[i] = 1;
+  });
+
+  const std::vector<uint32_t> counts = shareOut(count, m_areas);
+  std::vector<uint32_t> work;
+  uint32_t sampled = 0;
+  for (uint32_t i = 0; i < blocks.size(); ++i) {
+    stale[i] = stale[i] || m_points[i].sites.size() != countClassOf(counts[i]).most;
+    if (stale[i] || m_points[i].count != counts[i]) work.push_back(i);
+    sampled += stale[i] && counts[i] > 0;
+  }
+  std::stable_sort(work.begin(), work.end(), [&](uint32_t a, uint32_t b) { return counts[a] > counts[b]; });
+  parallelFor(work.size(), [&](size_t w) {
+    const uint32_t i = work[w];
+    BlockPoints& points = m_points[i];
+    const std::vector<glm::vec3> corners = stretchedCorners(primitiveOf(scene, blocks[i]), m_sources[i].stretch);
+    if (stale[i]) points.sites = sampleBlock(corners, countClassOf(counts[i]), m_sources[i].seed);
+    points.count = counts[i];
+    points.relativeRadius = relativeRadius(corners, std::span(points.sites).first(points.count));
+  });
+  return sampled;
+}
+
+}  // namespace limn
