@@ -73,11 +73,10 @@ PointLightCache::PointLightCache()
       m_compose("compose_points", sizeof(shared::ComposePush), &constants) {}
 
 Result<void> PointLightCache::resize(vk::Device& device, PointLayout layout, bool lobes) {
-  LIMN_CHECK(layout.count() > 0);
   if (!m_counters)
     if (auto made = makeCounters(device); !made) return made;
   if (m_light && layout == m_layout && lobes == m_lobesKept) return {};
-  const size_t count = layout.count();
+  const size_t count = std::max<size_t>(layout.count(), 1);
   auto light = makeBuffer(device, "points.light", count * sizeof(shared::PointLight));
   if (!light) return light.error();
   auto radiance = makeBuffer(device, "points.radiance", count * 2 * sizeof(glm::vec4), true);
@@ -126,15 +125,33 @@ Result<void> PointLightCache::prepare(const PointLightContext& context, const Sc
   return m_compose.prepare(context.device, composeBindings(context), needs, mayCompile);
 }
 
+std::vector<vk::Binding> PointLightCache::spreadBindings(const PointLightContext& context,
+                                                         const std::vector<vk::Binding>& grid) const {
+  return gpu::joined(gpu::joined(context.points, grid), {vk::storage(BINDING_POINT_LIGHT, m_light)});
+}
+
+Result<void> PointLightCache::prepareSpread(const PointLightContext& context, const std::vector<vk::Binding>& grid) {
+  if (m_spread) return {};
+  const auto all = spreadBindings(context, grid);
+  auto pass = gpu::Pass::create(context.device, "spread_points", all, sizeof(shared::SpreadPush));
+  if (!pass) return pass.error();
+  m_spread = pass.take();
+  return gpu::runNow(context.device, [&](vk::CommandRecorder& r) { m_spread.warmUp(r, all); });
+}
+
 void PointLightCache::recordClear(vk::CommandRecorder& recorder) const {
   for (const vk::Buffer* buffer : {&m_light, &m_radiance, &m_lobes}) recorder.fillBuffer(*buffer, 0, 0, 0);
   recorder.barrier();
 }
 
+uint32_t PointLightCache::slotsOf(SlotRange slots) const {
+  LIMN_CHECK(slots.first <= slots.end && slots.end <= m_layout.clusterSize);
+  return slots.end - slots.first;
+}
+
 void PointLightCache::recordRelight(vk::CommandRecorder& recorder, const PointLightContext& context,
                                     const RelightWork& work) const {
-  LIMN_CHECK(work.slots.first <= work.slots.end && work.slots.end <= m_layout.clusterSize && work.samples > 0);
-  const uint32_t slotCount = work.slots.end - work.slots.first;
+  const uint32_t slotCount = slotsOf(work.slots);
   const uint32_t owners = m_lobesKept ? lobeLights(context.scene.lights()) : 0;
   const auto all = relightBindings(context);
   for (uint32_t done = 0; done < work.samples && slotCount > 0;) {
@@ -156,11 +173,19 @@ void PointLightCache::recordRelight(vk::CommandRecorder& recorder, const PointLi
 
 void PointLightCache::recordCompose(vk::CommandRecorder& recorder, const PointLightContext& context,
                                     SlotRange slots) const {
-  LIMN_CHECK(slots.first <= slots.end && slots.end <= m_layout.clusterSize);
-  const uint32_t slotCount = slots.end - slots.first;
+  const uint32_t slotCount = slotsOf(slots);
   if (slotCount == 0) return;
   const shared::ComposePush push{slots.first, slotCount, m_layout.clusterCount, m_layout.clusterSize, m_lobesKept};
   m_compose->record(recorder, composeBindings(context), push, workgroups(slotCount * m_layout.clusterCount));
+  recorder.barrier();
+}
+
+void PointLightCache::recordSpread(vk::CommandRecorder& recorder, const PointLightContext& context,
+                                   const std::vector<vk::Binding>& grid, SlotRange slots) const {
+  const uint32_t slotCount = slotsOf(slots);
+  if (slotCount == 0) return;
+  const shared::SpreadPush push{slots.first, slotCount, m_layout.clusterCount, m_layout.clusterSize};
+  m_spread.record(recorder, spreadBindings(context, grid), push, workgroups(slotCount * m_layout.clusterCount));
   recorder.barrier();
 }
 

@@ -17,7 +17,7 @@ struct PointLightContext {
   vk::Device& device;
   const gpu::DeviceScene& scene;
   const SceneBvh& bvh;
-  std::vector<vk::Binding> points;  ///< BINDING_POINT_SITES among them; the same kinds at every call
+  std::vector<vk::Binding> points;  ///< of SurfacePoints: BINDING_POINTS and BINDING_POINT_SITES
 };
 
 /// Points are stored cluster by cluster: point = cluster * clusterSize + slot.
@@ -48,13 +48,17 @@ class PointLightCache {
  public:
   PointLightCache();
 
-  /// Makes room; contents are undefined until recordClear(). Nothing happens where the room is right already. Errors:
-  /// "limit", "out-of-memory", "device-lost".
+  /// Makes room, for one point at least; contents are undefined until recordClear(). Nothing happens where the room is
+  /// right already. Errors: "limit", "out-of-memory", "device-lost".
   Result<void> resize(vk::Device& device, PointLayout layout, bool lobes);
 
   /// Pipelines for what the scene needs, compiled and warm; made the first time and where `mayCompile` says that a stop
   /// is no matter. After resize(). Errors: "device", "out-of-memory", "device-lost".
   Result<void> prepare(const PointLightContext& context, const SceneNeeds& needs, bool mayCompile);
+
+  /// The pipeline of recordSpread(), compiled and warm; made the first time only. `grid` is as for recordSpread().
+  /// Errors as prepare().
+  Result<void> prepareSpread(const PointLightContext& context, const std::vector<vk::Binding>& grid);
 
   /// Sets all light to zero, that of gathers too.
   void recordClear(vk::CommandRecorder& recorder) const;
@@ -64,6 +68,11 @@ class PointLightCache {
 
   /// Writes POINT_RADIANCE of the slots from POINT_LIGHT and the materials. Ends with a barrier.
   void recordCompose(vk::CommandRecorder& recorder, const PointLightContext& context, SlotRange slots) const;
+
+  /// Interpolates the indirect light of points that are in a PointGrid, whose bindings `grid` are, to the slots given,
+  /// which are not in it. Ends with a barrier.
+  void recordSpread(vk::CommandRecorder& recorder, const PointLightContext& context,
+                    const std::vector<vk::Binding>& grid, SlotRange slots) const;
 
   /// POINT_LIGHT, POINT_RADIANCE (texel) and POINT_LOBES, for gathers. Without lobes the last is a dummy of one point.
   std::vector<vk::Binding> bindings() const;
@@ -81,11 +90,14 @@ class PointLightCache {
   Result<void> makeCounters(vk::Device& device);
   std::vector<vk::Binding> relightBindings(const PointLightContext& context) const;
   std::vector<vk::Binding> composeBindings(const PointLightContext& context) const;
+  std::vector<vk::Binding> spreadBindings(const PointLightContext& context, const std::vector<vk::Binding>& grid) const;
+  uint32_t slotsOf(SlotRange slots) const;
 
   PointLayout m_layout;
   bool m_lobesKept = false;
   vk::Buffer m_light, m_radiance, m_lobes, m_counters;
   gpu::TailoredPass m_relight, m_compose;
+  gpu::Pass m_spread;
 };
 
 }  // namespace limn

@@ -37,6 +37,14 @@ struct ComposePush {
 };
 LIMN_ASSERT_SIZE(ComposePush, 20);
 
+struct SpreadPush {
+  uint firstSlot;
+  uint slotCount;
+  uint clusterCount;
+  uint clusterSize;
+};
+LIMN_ASSERT_SIZE(SpreadPush, 16);
+
 #ifndef LIMN_GLSL
 }  // namespace limn::shared
 #endif
