@@ -45,7 +45,6 @@ const std::vector<Wrong>& wrongMessages() {
       {"wrongEditInBatch",
        R"({"op":"batch","seq":23,"edits":[{"target":"light","light":0},{"target":"light","light":0,"range":-1}]})",
        "out-of-range"},
-      {"unknownView", R"({"op":"set","seq":24,"target":"resolve","view":"camera"})", "out-of-range"},
       {"unknownToneMap", R"({"op":"set","seq":24,"target":"resolve","toneMap":"sepia"})", "out-of-range"},
       {"imageTooLarge", R"({"op":"set","seq":25,"target":"image","width":8192,"height":64})", "out-of-range"},
       {"imageTooSmall", R"({"op":"set","seq":26,"target":"image","width":1,"height":64})", "out-of-range"},
@@ -61,6 +60,7 @@ const std::vector<Wrong>& wrongMessages() {
       {"pathOutOfTheRoot", R"({"op":"load","seq":35,"uri":"../../etc/passwd"})", "io"},
       {"noSuchFile", R"({"op":"load","seq":36,"uri":"no-such-scene.glb"})", "io"},
       {"directoryAsFile", R"({"op":"load","seq":37,"uri":"."})", "io"},
+      {"unknownView", R"({"op":"set","seq":38,"target":"resolve","view":"camera"})", "out-of-range"},
   };
   return cases;
 }
