@@ -14,6 +14,7 @@
 #define LIMN_ALPHA
 #define LIMN_ALPHA_ENABLED kUseAlpha
 #include "shaders/lib/shadow.glsl"
+#include "shaders/lib/spherical_triangle.glsl"
 
 layout(constant_id = 16) const bool kUseLobes = true;
 
@@ -25,6 +26,11 @@ layout(binding = BINDING_COUNTERS, scalar) buffer Counters { uint counters[]; };
 layout(push_constant, scalar) uniform Push { RelightPush push; };
 
 struct SideLight { vec3 front, back; };
+
+LightSample sampleFor(Surface s, LightData light, float uAlias, vec2 u) {
+  if (kUseTriangleLights && light.type == kLightTriangle) return sampleTriangleLightEvenly(light, s.posR, u);
+  return sampleChosenLight(light, s.posR, uAlias, u);
+}
 
 // What of a light's sample arrives on the surface, its cosine included. A normal map tilts the side it is on; where the
 // two normals disagree about the side, nothing arrives.
@@ -52,7 +58,7 @@ void addTurn(uint point, Surface s, uint turn, inout SideLight sum, inout uint d
   Sampler sampler_ = makeSampler(point, whole ? ~turn : sampleIndex, push.seed);
   vec2 choice = next2D(sampler_), u = next2D(sampler_);
   uint chosen = chooseLight(choice), index = whole ? turn : chosen;
-  LightSample light = sampleChosenLight(lights[index], s.posR, choice.y, u);
+  LightSample light = sampleFor(s, lights[index], choice.y, u);
   vec3 arriving = irradianceOf(s, light);
   if (!isFinite(arriving)) {
     ++discarded;

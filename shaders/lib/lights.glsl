@@ -49,6 +49,13 @@ float triangleLightPdf(LightData light, float d, float cosLight) {
   return light.probability * d * d / (light.area * max(cosLight, 1e-7));
 }
 
+// The shadow ray stops short of the emitter itself, by more than its hit is rounded: in proportion to the distance, and by
+// the corners' own digits across its plane.
+float distanceShortOf(vec3 corner, float edge, float cosLight, float d) {
+  float rounding = (maxComponent(abs(corner)) + edge) * (8.0 / 16777216.0);
+  return d * (1.0 - 2e-5) - min(rounding / max(cosLight, 1e-7), 0.1 * d);
+}
+
 LightSample sampleTriangleLight(LightData light, vec3 p, vec2 u) {
   uvec4 t = texelFetch(triangles, int(light.triangle));
   vec3 p0 = texelFetch(positions, int(t.x)).xyz;
@@ -62,10 +69,7 @@ LightSample sampleTriangleLight(LightData light, vec3 p, vec2 u) {
   float scale = max(maxComponent(abs(e1)), maxComponent(abs(e2)));
   float cosLight = abs(dot(normalize(cross(e1 / scale, e2 / scale)), s.dirW));
   if (!(cosLight > 1e-7)) return s;
-  // The shadow ray stops short of the emitter itself, by more than its hit is rounded: in proportion to the distance,
-  // and by the corners' own digits across its plane.
-  float rounding = (maxComponent(abs(p0)) + scale) * (8.0 / 16777216.0);
-  s.distance = d * (1.0 - 2e-5) - min(rounding / cosLight, 0.1 * d);
+  s.distance = distanceShortOf(p0, scale, cosLight, d);
   s.pdf = triangleLightPdf(light, d, cosLight);
   s.radiance = triangleEmission(light.triangle, barycentrics) / s.pdf;
   return s;
