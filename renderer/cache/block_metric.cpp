@@ -13,7 +13,8 @@ double roundedScale(double scale) {
 
 double roundedCosine(const glm::dvec3& a, const glm::dvec3& b) {
   const double lengths = glm::length(a) * glm::length(b);
-  return lengths > 0.0 ? std::clamp(std::round(glm::dot(a, b) / lengths * kCosineSteps) / kCosineSteps, -1.0, 1.0) : 0.0;
+  return lengths > 0.0 ? std::clamp(std::round(glm::dot(a, b) / lengths * kCosineSteps) / kCosineSteps, -1.0, 1.0)
+                       : 0.0;
 }
 
 }  // namespace
@@ -26,7 +27,8 @@ glm::dmat3 roundedStretch(const glm::dmat3& m) {
   glm::dvec3 z(xz, 0.0, 0.0);
   if (y.y > 0.0) z.y = std::clamp((yz - xy * xz) / y.y, -1.0, 1.0);
   z.z = std::sqrt(std::max(1.0 - z.x * z.x - z.y * z.y, 0.0));
-  return {x * roundedScale(glm::length(m[0])), y * roundedScale(glm::length(m[1])), z * roundedScale(glm::length(m[2]))};
+  return {x * roundedScale(glm::length(m[0])), y * roundedScale(glm::length(m[1])),
+          z * roundedScale(glm::length(m[2]))};
 }
 
 std::vector<glm::vec3> stretchedCorners(const Primitive& primitive, const glm::dmat3& stretch) {

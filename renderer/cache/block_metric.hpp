@@ -8,8 +8,8 @@
 
 namespace limn {
 
-/// Scales are told apart in steps of 2^(1/64), about 1.1 %; angles between the images of the axes in steps of 1/64 of their
-/// cosine. Moving and turning an object leaves its metric as it is.
+/// Scales are told apart in steps of 2^(1/64), about 1.1 %; angles between the images of the axes in steps of 1/64 of
+/// their cosine. Moving and turning an object leaves its metric as it is.
 constexpr double kScaleStepsPerOctave = 64.0, kCosineSteps = 64.0;
 
 /// What a node's linear map does to lengths, without its rotation: U with transpose(U) U = G, upper triangular, G being

@@ -13,18 +13,18 @@ namespace limn {
 struct BlockPoints {
   std::vector<BlockSite> sites;  ///< of the whole class; the first `count` are in use
   uint32_t count = 0;
-  double relativeRadius = 1.0;   ///< of the sites in use
+  double relativeRadius = 1.0;  ///< of the sites in use
 };
 
-/// Points of every block of a scene, sampled in the block's own space under its rounded stretch: where a block stands and how it
-/// is turned does not matter. What comes out is a function of scene, count and seed alone; what is kept from earlier calls saves
-/// time. [IPP §4]
+/// Points of every block of a scene, sampled in the block's own space under its rounded stretch: where a block stands
+/// and how it is turned does not matter. What comes out is a function of scene, count and seed alone; what is kept from
+/// earlier calls saves time. [IPP §4]
 class BlockSampling {
  public:
-  /// Shares `count` points out by area (largest remainder) and samples the blocks that need it, on all cores. Gives how many were
-  /// sampled. The sum of counts is `count`, or 0 in scenes without area.
-  uint32_t update(const Scene& scene, const std::vector<gpu::GeometryBlock>& blocks, const std::vector<glm::dmat4>& worldFromNodes,
-                  uint32_t count, uint32_t seed);
+  /// Shares `count` points out by area (largest remainder) and samples the blocks that need it, on all cores. Gives how
+  /// many were sampled. The sum of counts is `count`, or 0 in scenes without area.
+  uint32_t update(const Scene& scene, const std::vector<gpu::GeometryBlock>& blocks,
+                  const std::vector<glm::dmat4>& worldFromNodes, uint32_t count, uint32_t seed);
 
   const std::vector<BlockPoints>& blocks() const { return m_points; }
 
@@ -42,8 +42,8 @@ class BlockSampling {
   std::vector<BlockPoints> m_points;
 };
 
-/// Integers that add up to `count`, as near to the shares of `weights` as can be; all zero when no weight is above zero.
-/// Equal remainders go to the first. [Hamilton's method]
+/// Integers that add up to `count`, as near to the shares of `weights` as can be; all zero when no weight is above
+/// zero. Equal remainders go to the first. [Hamilton's method]
 std::vector<uint32_t> shareOut(uint32_t count, const std::vector<double>& weights);
 
 }  // namespace limn

@@ -7,8 +7,8 @@
 
 namespace limn {
 
-/// Calls work(i) once for every i < count on all cores, the caller's thread among them. Calls take their turns in order of i;
-/// what they write must not depend on who runs first.
+/// Calls work(i) once for every i < count on all cores, the caller's thread among them. Calls take their turns in order
+/// of i; what they write must not depend on who runs first.
 template <class Work>
 void parallelFor(size_t count, const Work& work) {
   std::atomic<size_t> next{0};

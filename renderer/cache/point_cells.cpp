@@ -21,6 +21,18 @@ uint64_t keyOf(const glm::vec3& p, float perSide) {
   return (uint64_t(cell.x) + 1) * kStepX + (uint64_t(cell.y) + 1) * kStepY + (uint64_t(cell.z) + 1) * kStepZ;
 }
 
+uint64_t spreadBits(uint64_t v) {
+  v &= 0x1fffff;
+  v = (v | v << 32) & 0x1f00000000ffffull;
+  v = (v | v << 16) & 0x1f0000ff0000ffull;
+  v = (v | v << 8) & 0x100f00f00f00f00full;
+  v = (v | v << 4) & 0x10c30c30c30c30c3ull;
+  return (v | v << 2) & 0x1249249249249249ull;
+}
+
+/// Place on the Morton curve.
+uint64_t alongCurve(uint64_t key) { return spreadBits(key) | spreadBits(key >> 21) << 1 | spreadBits(key >> 42) << 2; }
+
 }  // namespace
 
 PointCells::PointCells(std::span<const glm::vec3> points, float side) {
@@ -40,11 +52,31 @@ PointCells::PointCells(std::span<const glm::vec3> points, float side) {
     cellOf[i] = m_table[slot];
     ++counts[cellOf[i]];
   }
+  sortCells(cellOf, counts);
   m_start.assign(m_keys.size() + 1, 0);
   for (size_t c = 0; c < counts.size(); ++c) m_start[c + 1] = m_start[c] + counts[c];
   std::vector<uint32_t> cursor(m_start.begin(), m_start.end() - 1);
   m_order.resize(points.size());
   for (size_t i = 0; i < points.size(); ++i) m_order[cursor[cellOf[i]]++] = uint32_t(i);
+}
+
+/// Renumbers the cells along a curve that stays near where it is, so that neighbours are near in memory too.
+void PointCells::sortCells(std::vector<uint32_t>& cellOf, std::vector<uint32_t>& counts) {
+  std::vector<std::pair<uint64_t, uint32_t>> curve(m_keys.size());
+  for (uint32_t c = 0; c < curve.size(); ++c) curve[c] = {alongCurve(m_keys[c]), c};
+  std::sort(curve.begin(), curve.end());
+  std::vector<uint32_t> place(curve.size()), sortedCounts(curve.size());
+  std::vector<uint64_t> sortedKeys(curve.size());
+  for (uint32_t at = 0; at < curve.size(); ++at) {
+    place[curve[at].second] = at;
+    sortedKeys[at] = m_keys[curve[at].second];
+    sortedCounts[at] = counts[curve[at].second];
+  }
+  for (uint32_t& cell : cellOf) cell = place[cell];
+  for (uint32_t& cell : m_table)
+    if (cell != kEmpty) cell = place[cell];
+  m_keys = std::move(sortedKeys);
+  counts = std::move(sortedCounts);
 }
 
 double PointCells::crowding() const {

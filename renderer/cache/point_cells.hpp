@@ -7,8 +7,8 @@
 
 namespace limn {
 
-/// Points of the unit cube sorted into cubic cells, only those that hold points kept. Two points closer than a cell's side
-/// are in the same cell or in neighbouring ones.
+/// Points of the unit cube sorted into cubic cells, only those that hold points kept. Two points closer than a cell's
+/// side are in the same cell or in neighbouring ones.
 class PointCells {
  public:
   /// `side` of a cell is made at least 2^-20.
@@ -29,6 +29,7 @@ class PointCells {
   }
 
  private:
+  void sortCells(std::vector<uint32_t>& cellOf, std::vector<uint32_t>& counts);
   uint32_t find(uint64_t key) const;
 
   std::vector<uint32_t> m_table;  ///< open addressing: cell, or empty

@@ -12,7 +12,8 @@
 namespace limn {
 namespace {
 
-constexpr double kReach = 1.8;  // radius over the side of a point's square of surface: about 10 points are in reach on a plane
+constexpr double kReach =
+    1.8;  // radius over the side of a point's square of surface: about 10 points are in reach on a plane
 constexpr double kMinReachShare = 1e-5;  // of the scene's size: cells stay few enough to count them in integers
 
 glm::ivec3 cellOf(const glm::vec3& posR, const shared::PointGridInfo& info) {

@@ -14,7 +14,7 @@ namespace limn {
 struct PointSubset {
   std::span<const shared::SurfacePoint> points;  ///< all, cluster by cluster
   uint32_t clusterSize = 0, slots = 0;
-  double areaPerPoint = 0.0;                     ///< [m²] of the whole set
+  double areaPerPoint = 0.0;  ///< [m²] of the whole set
 };
 
 /// A uniform hashed grid over surface points, as the device reads it.
@@ -28,17 +28,18 @@ PointGridData buildPointGrid(const PointSubset& subset);
 /// Bucket of a cell; 2x2x2 neighbouring cells are always in different ones.
 uint32_t bucketOf(const glm::ivec3& cell, uint32_t mask);
 
-/// Weight of a point that lies `apart` from a position, for a normal there: 1 at the position itself, 0 from `radius` on, where
-/// the plane is missed by kPointGridPlaneReach of it, and where `cosine` of the normals is not positive.
+/// Weight of a point that lies `apart` from a position, for a normal there: 1 at the position itself, 0 from `radius`
+/// on, where the plane is missed by kPointGridPlaneReach of it, and where `cosine` of the normals is not positive.
 float pointWeight(const glm::vec3& apart, const glm::vec3& normal, float cosine, float radius);
 
 /// The grid on the device: shaders/lib/point_grid.glsl looks up in it. Render thread.
 class PointGrid {
  public:
-  /// Builds the grid over the first `slots` points of every cluster; 0 < slots <= points.clusterSize(), unless there are no
-  /// points. Errors: "limit", "out-of-memory", "device-lost".
+  /// Builds the grid over the first `slots` points of every cluster; 0 < slots <= points.clusterSize(), unless there
+  /// are no points. Errors: "limit", "out-of-memory", "device-lost".
   Result<void> update(vk::Device& device, const SurfacePoints& points, uint32_t slots);
-  /// POINT_GRID and POINT_GRID_ENTRIES, both texel. After a successful update. Look-ups also read POINTS and POINT_LIGHT.
+  /// POINT_GRID and POINT_GRID_ENTRIES, both texel. After a successful update. Look-ups also read POINTS and
+  /// POINT_LIGHT.
   std::vector<vk::Binding> bindings() const;
   float radius() const { return m_radius; }  ///< [m], how far a point reaches
 

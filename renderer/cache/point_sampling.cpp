@@ -9,7 +9,7 @@
 namespace limn {
 namespace {
 
-constexpr uint32_t kOversampling = 5;     // candidates a point [Yuksel 2015, §3]
+constexpr uint32_t kOversampling = 5;  // candidates a point [Yuksel 2015, §3]
 constexpr uint32_t kLeastCandidates = 64;
 constexpr double kClassesPerOctave = 4.0;
 
@@ -88,7 +88,8 @@ std::vector<BlockSite> drawCandidates(std::span<const glm::vec3> corners, double
   // Sums that were rounded may leave the last ones out.
   while (!sites.empty() && sites.size() < count) {
     const uint64_t i = sites.size();
-    sites.push_back({sites.back().triangle, uniformBarycentrics(uniformAt(seed, i * 3 + 1), uniformAt(seed, i * 3 + 2))});
+    sites.push_back(
+        {sites.back().triangle, uniformBarycentrics(uniformAt(seed, i * 3 + 1), uniformAt(seed, i * 3 + 2))});
   }
   return sites;
 }

@@ -18,10 +18,10 @@ struct EliminationGoal {
   double maxRadius = 0.0;        ///< largest possible disk radius of `most` points on the surface's area
 };
 
-/// Weighted sample elimination [Yuksel 2015, "Sample Elimination for Generating Poisson Disk Sample Sets"]: takes away the
-/// candidate most crowded by the rest, one by one, until `least` are left. Gives indices of `most` candidates such that any
-/// prefix of at least `least` of them is a blue-noise set. Candidates that are crowded alike, within 1/4096 of the most crowded
-/// one at the start, go in no particular but always the same order.
+/// Weighted sample elimination [Yuksel 2015, "Sample Elimination for Generating Poisson Disk Sample Sets"]: takes away
+/// the candidate most crowded by the rest, one by one, until `least` are left. Gives indices of `most` candidates such
+/// that any prefix of at least `least` of them is a blue-noise set. Candidates that are crowded alike, within 1/1024 of
+/// the most crowded one at the start, go in no particular but always the same order.
 std::vector<uint32_t> eliminateSamples(std::span<const SurfaceCandidate> candidates, const EliminationGoal& goal);
 
 /// Smallest distance between two candidates that see each other, at most `limit`.

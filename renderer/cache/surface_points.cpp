@@ -14,7 +14,7 @@
 namespace limn {
 namespace {
 
-constexpr uint32_t kFewPoints = 16;      // blocks of fewer have no spacing worth a figure
+constexpr uint32_t kFewPoints = 16;       // blocks of fewer have no spacing worth a figure
 constexpr uint32_t kPointsAPiece = 8192;  // of work for one core
 
 /// Milliseconds since `since`, which becomes now.
@@ -44,7 +44,8 @@ std::vector<T> picked(const std::vector<T>& values, const std::vector<uint32_t>&
 
 /// Writes values to a buffer that is made anew when its size is another; one dummy where there are none.
 template <class T>
-Result<void> write(vk::Device& device, vk::Buffer& buffer, const char* name, const std::vector<T>& values, VkFormat texelFormat) {
+Result<void> write(vk::Device& device, vk::Buffer& buffer, const char* name, const std::vector<T>& values,
+                   VkFormat texelFormat) {
   const std::vector<T> dummy(1);
   const std::span<const T> contents = values.empty() ? std::span<const T>(dummy) : std::span<const T>(values);
   if (buffer && buffer.size() == contents.size_bytes()) return vk::uploadArray(device, buffer, contents);
@@ -62,8 +63,9 @@ Result<void> write(vk::Device& device, vk::Buffer& buffer, const char* name, con
 
 }  // namespace
 
-Result<SurfacePoints::Update> SurfacePoints::update(vk::Device& device, const Scene& scene, const gpu::DeviceScene& mirror,
-                                                    uint32_t count, uint32_t clusters, uint32_t seed) {
+Result<SurfacePoints::Update> SurfacePoints::update(vk::Device& device, const Scene& scene,
+                                                    const gpu::DeviceScene& mirror, uint32_t count, uint32_t clusters,
+                                                    uint32_t seed) {
   LIMN_CHECK(count > 0 && std::has_single_bit(clusters));
   count = (count + clusters - 1) / clusters * clusters;
   Update result;
@@ -97,7 +99,9 @@ bool SurfacePoints::lookAtPlacements(const gpu::DeviceScene& mirror, const std::
     Placement& placement = m_placements[i];
     const uint64_t corners = hashWords(std::span(blocks[i].corners));
     const bool mirrored = glm::determinant(glm::dmat3(worldFromNodes[blocks[i].node])) < 0.0;
-    if (corners == placement.corners && blocks[i].firstTriangle == placement.firstTriangle && mirrored == placement.mirrored) return;
+    if (corners == placement.corners && blocks[i].firstTriangle == placement.firstTriangle &&
+        mirrored == placement.mirrored)
+      return;
     placement = {corners, areaOf(blocks[i].corners), blocks[i].firstTriangle, mirrored};
     moved = true;
   });

@@ -9,10 +9,10 @@
 
 namespace limn {
 
-/// Blue-noise points on all surfaces, each of about equal area, in clusters of equal size; they ride on their triangles when
-/// objects move. POINTS and POINT_SITES of shaders/shared/bindings.h are cluster-major, and the first m points of every
-/// cluster are spread over it. The contents are a function of scene, count, clusters and seed alone, however they came to be.
-/// [IPP §3.1, §3.2, §4] Render thread.
+/// Blue-noise points on all surfaces, each of about equal area, in clusters of equal size; they ride on their triangles
+/// when objects move. POINTS and POINT_SITES of shaders/shared/bindings.h are cluster-major, and the first m points of
+/// every cluster are spread over it. The contents are a function of scene, count, clusters and seed alone, however they
+/// came to be. [IPP §3.1, §3.2, §4] Render thread.
 class SurfacePoints {
  public:
   /// What update() did and how long it took [ms].
@@ -22,15 +22,20 @@ class SurfacePoints {
     double sampleMs = 0.0, moveMs = 0.0, clusterMs = 0.0, uploadMs = 0.0;
   };
 
-  /// Brings the points up to date with a scene and its mirror. `count` is rounded up to a multiple of `clusters`, a power of two.
-  /// Errors: "limit", "out-of-memory", "device-lost"; then bindings() are not to be used until an update succeeds.
-  Result<Update> update(vk::Device& device, const Scene& scene, const gpu::DeviceScene& mirror, uint32_t count, uint32_t clusters,
-                        uint32_t seed);
+  /// Brings the points up to date with a scene and its mirror. `count` is rounded up to a multiple of `clusters`, a
+  /// power of two. Errors: "limit", "out-of-memory", "device-lost"; then bindings() are not to be used until an update
+  /// succeeds.
+  Result<Update> update(vk::Device& device, const Scene& scene, const gpu::DeviceScene& mirror, uint32_t count,
+                        uint32_t clusters, uint32_t seed);
 
-  uint32_t count() const { return uint32_t(m_points.size()); }  ///< 0 in scenes without area; buffers hold one dummy then
+  uint32_t count() const {
+    return uint32_t(m_points.size());
+  }  ///< 0 in scenes without area; buffers hold one dummy then
   uint32_t clusterCount() const { return m_clusterCount; }
   uint32_t clusterSize() const { return m_clusterCount > 0 ? count() / m_clusterCount : 0; }
-  double areaPerPoint() const { return m_areaPerPoint; }      ///< [m²], of the surfaces as they are placed; 0 without points
+  double areaPerPoint() const {
+    return m_areaPerPoint;
+  }  ///< [m²], of the surfaces as they are placed; 0 without points
   /// Of the least even block, see relativeRadius() in point_sampling.hpp; blocks of under 16 points do not count.
   double relativeRadius() const { return m_relativeRadius; }
   /// POINTS (texel) and POINT_SITES (storage). After a successful update.

@@ -5,7 +5,8 @@
 
 namespace limn {
 
-/// 64-bit hash of plain data, 8 bytes at a time: tells what changed between two looks at large arrays. Not for files or wires.
+/// 64-bit hash of plain data, 8 bytes at a time: tells what changed between two looks at large arrays. Not for files or
+/// wires.
 template <class T>
 uint64_t hashWords(std::span<const T> values, uint64_t seed = 0) {
   const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());

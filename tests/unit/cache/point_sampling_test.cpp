@@ -114,7 +114,8 @@ TEST(PointSampling, PointsAreFarApart) {
     constexpr uint32_t kCount = 4096;
     const std::vector<BlockSite> sites = sampleBlock(corners, {kCount, kCount}, 3);
     expectSitesOnTriangles(corners, sites);
-    const Spacing ours = spacingOf(positionsOf(corners, sites)), random = spacingOf(positionsOf(corners, uniformSites(corners, kCount)));
+    const Spacing ours = spacingOf(positionsOf(corners, sites)),
+                  random = spacingOf(positionsOf(corners, uniformSites(corners, kCount)));
     const double radius = relativeRadius(corners, sites);
     std::cout << "nearest neighbours: least " << ours.least / random.least << " and mean " << ours.mean / random.mean
               << " times those of random points; relative radius " << radius << '\n';
