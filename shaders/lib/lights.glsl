@@ -49,8 +49,8 @@ float triangleLightPdf(LightData light, float d, float cosLight) {
   return light.probability * d * d / (light.area * max(cosLight, 1e-7));
 }
 
-// The shadow ray stops short of the emitter itself, by more than its hit is rounded: in proportion to the distance, and by
-// the corners' own digits across its plane.
+// The shadow ray stops short of the emitter itself, by more than its hit is rounded: in proportion to the distance, and
+// by the corners' own digits across its plane.
 float distanceShortOf(vec3 corner, float edge, float cosLight, float d) {
   float rounding = (maxComponent(abs(corner)) + edge) * (8.0 / 16777216.0);
   return d * (1.0 - 2e-5) - min(rounding / max(cosLight, 1e-7), 0.1 * d);
