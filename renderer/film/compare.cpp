@@ -63,13 +63,17 @@ Result<RadianceView> radianceOf(const FilmImage& image, const std::string& place
 
 Result<std::vector<double>> relativeSquares(const RadianceView& picture, const Reference& reference) {
   if (Result<void> checked = check(picture, reference); !checked) return checked.error();
-  const double mean = meanOf(reference.mean.values);
-  std::vector<double> quotients(picture.values.size());
-  for (size_t i = 0; i < quotients.size(); ++i) {
-    const double r = reference.mean.values[i];
-    quotients[i] = quotient(squareAt(picture, reference, i), r * r + kDenominatorShare * mean * mean);
-  }
+  std::vector<double> quotients = relativeDenominators(reference);
+  for (size_t i = 0; i < quotients.size(); ++i) quotients[i] = quotient(squareAt(picture, reference, i), quotients[i]);
   return quotients;
+}
+
+std::vector<double> relativeDenominators(const Reference& reference) {
+  const double mean = meanOf(reference.mean.values);
+  std::vector<double> denominators;
+  denominators.reserve(reference.mean.values.size());
+  for (const double r : reference.mean.values) denominators.push_back(r * r + kDenominatorShare * mean * mean);
+  return denominators;
 }
 
 double trimmedMean(std::vector<double> values, double discardedShare) {

@@ -44,6 +44,9 @@ Result<ErrorMetrics> compareImages(const RadianceView& picture, const Reference&
 /// (a−r)² / (r² + 0.01·mean(r)²) of every value, or the halves' product over the same denominator. Same errors.
 Result<std::vector<double>> relativeSquares(const RadianceView& picture, const Reference& reference);
 
+/// r² + 0.01·mean(r)² of every value: what those squares are divided by. Zero only where the reference is black all over.
+std::vector<double> relativeDenominators(const Reference& reference);
+
 /// Mean without the `discardedShare` of values that are largest in magnitude; at least one value stays.
 double trimmedMean(std::vector<double> values, double discardedShare);
 

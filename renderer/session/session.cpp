@@ -1,5 +1,7 @@
 #include "renderer/session/session.hpp"
 
+#include <algorithm>
+
 #include "renderer/base/clock.hpp"
 #include "renderer/session/session_impl.hpp"
 
@@ -44,6 +46,15 @@ Result<void> Session::runSteps(uint32_t steps) {
   if (auto done = s.drainMailbox(); !done) return done;
   while (s.progress.passes < steps && !s.progress.converged)
     if (auto done = s.work(s.config.quantumSeconds); !done) return done;
+  return {};
+}
+
+Result<void> Session::runSeconds(double seconds) {
+  Impl& s = *m_impl;
+  const double end = nowSeconds() + seconds;
+  if (auto done = s.drainMailbox(); !done) return done;
+  for (double left = seconds; left > 0.0 && !s.progress.converged; left = end - nowSeconds())
+    if (auto done = s.work(std::min(s.config.quantumSeconds, left)); !done) return done;
   return {};
 }
 

@@ -37,6 +37,9 @@ class Session {
   /// Applies what waits in the mailbox, then runs whole passes until `steps` have been made since the restart or the picture
   /// has converged. Publishes nothing. For `limn render` and tests.
   Result<void> runSteps(uint32_t steps);
+  /// As runSteps(), but quanta until `seconds` are over, the last cut to what is left; a pass may stay unfinished. How much is
+  /// done then depends on the machine. For `limn bench`.
+  Result<void> runSeconds(double seconds);
   /// Render thread: steps until the mailbox is closed, sleeping when idle.
   Result<void> run();
 

@@ -22,7 +22,8 @@ std::string overview() {
 }  // namespace
 
 std::vector<Command> allCommands() {
-  return {renderCommand(), sendCommand(), compareCommand(), mergeCommand(), infoCommand(), devicesCommand()};
+  return {renderCommand(), sendCommand(), compareCommand(), benchCommand(),
+          mergeCommand(),  infoCommand(), devicesCommand()};
 }
 
 int runLimn(const std::vector<std::string>& words) {

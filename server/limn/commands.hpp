@@ -11,6 +11,7 @@ struct Command {
   Result<void> (*run)(const Arguments& arguments);
 };
 
+Command benchCommand();
 Command compareCommand();
 Command devicesCommand();
 Command infoCommand();

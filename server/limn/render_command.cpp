@@ -1,29 +1,16 @@
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 
 #include "renderer/base/clock.hpp"
 #include "renderer/film/exr.hpp"
 #include "renderer/film/file_bytes.hpp"
 #include "renderer/vk/device.hpp"
+#include "server/limn/cache_directory.hpp"
 #include "server/limn/commands.hpp"
 #include "server/limn/render_stats.hpp"
 
 namespace limn {
 namespace {
-
-/// Where pipelines are kept between runs: $XDG_CACHE_HOME/limn, ~/.cache/limn, or nowhere.
-std::string cacheDirectory() {
-  const char* base = std::getenv("XDG_CACHE_HOME");
-  const char* home = std::getenv("HOME");
-  if (!base && !home) return "";
-  const std::filesystem::path root = base ? std::filesystem::path(base) : std::filesystem::path(home) / ".cache";
-  const std::filesystem::path path = root / "limn";
-  std::error_code problem;
-  std::filesystem::create_directories(path, problem);
-  return problem ? "" : path.string();
-}
 
 void keepLayers(FilmImage& image, const std::vector<std::string>& asked) {
   if (asked.empty()) return;

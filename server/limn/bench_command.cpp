@@ -1,0 +1,111 @@
+#include <cstdio>
+#include <filesystem>
+
+#include "renderer/base/clock.hpp"
+#include "renderer/film/file_bytes.hpp"
+#include "renderer/vk/device.hpp"
+#include "server/limn/bench_growth.hpp"
+#include "server/limn/bench_page.hpp"
+#include "server/limn/bench_plots.hpp"
+#include "server/limn/bench_scene.hpp"
+#include "server/limn/cache_directory.hpp"
+#include "server/limn/commands.hpp"
+
+namespace limn {
+namespace {
+
+using namespace bench;
+
+Result<void> writeText(const std::string& file, const std::string& text) {
+  return writeFileAtomically(file, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+}
+
+void printScene(const SceneResult& scene) {
+  std::printf("%s: reference of %llu samples, noise %.2g%s\n", scene.name.c_str(),
+              static_cast<unsigned long long>(scene.referenceSamples), scene.referenceNoise,
+              scene.referenceFineEnough ? "" : ", more than a twentieth of the smallest error");
+  for (const Curve& curve : scene.curves) {
+    std::printf("  %-18s", curve.technique.c_str());
+    for (const CurvePoint& point : curve.points) std::printf("  %.2f s %.2e", point.seconds, point.relMse);
+    if (curve.slope) std::printf("  slope %.3f", curve.slope->exponent);
+    std::printf("\n");
+    if (curve.points.empty() || !curve.points.back().parts) continue;
+    const CurvePoint& last = curve.points.back();
+    std::printf("  %-18s  at the end: noise %.2e, bias squared %.1e +- %.1e, spread of seeds %.1f %%, told %.1f %%\n",
+                "", last.parts->noise, last.parts->biasSquared, 1.96 * last.parts->biasDeviation, 100.0 * last.spread,
+                100.0 * last.toldSpread);
+  }
+  std::fflush(stdout);
+}
+
+void printSummary(const BenchResults& results) {
+  for (const TechniqueCalibration& c : results.calibrations)
+    std::printf("%s: %.0f %% of %zu intervals hold the error, median of estimate / error %.3f\n", c.technique.c_str(),
+                100.0 * c.trimmed.heldShare, c.trimmed.count, c.trimmed.medianRatio);
+  for (const Growth& g : results.growth)
+    if (g.time && g.memory)
+      std::printf("%s: time per step grows with %s to the %.2f, memory to the %.2f\n", g.technique.c_str(),
+                  g.axis.c_str(), g.time->exponent, g.memory->exponent);
+  for (const std::string& sentence : results.absent) std::printf("%s\n", sentence.c_str());
+}
+
+/// Tables, plots and page. Plots come before the page, which holds them.
+Result<void> writeReport(BenchResults& results) {
+  const std::filesystem::path output = results.options.output;
+  const Result<bool> drawn = drawPlots(plotsOf(results), output.string());
+  if (!drawn) return drawn.error();
+  if (!*drawn)
+    results.absent.push_back("The plots are absent: gnuplot is not installed or failed; plots.gnuplot is there.");
+  if (Result<void> done = writeText((output / "results.csv").string(), resultsCsv(results)); !done) return done;
+  if (Result<void> done = writeText((output / "results.json").string(), resultsJson(results)); !done) return done;
+  return writeText((output / "index.html").string(), resultsPage(results, output.string()));
+}
+
+Result<void> measure(BenchResults& results) {
+  const BenchOptions& options = results.options;
+  const Result<std::vector<PeerPicture>> peers = readPeerPictures(options.pictures);
+  if (!peers) return peers.error();
+  if (peers->empty())
+    results.absent.push_back("No other renderer's pictures were given (--pictures); tests/bench/peers makes some.");
+  vk::DeviceOptions deviceOptions;
+  deviceOptions.cacheDir = cacheDirectory();
+  const Result<std::unique_ptr<vk::Device>> device = vk::Device::open(deviceOptions);
+  if (!device) return device.error();
+  results.device = (*device)->info().name;
+  results.driver = (*device)->info().driver;
+  for (const std::string& file : options.scenes) {
+    Result<SceneResult> scene = measureScene(**device, file, options, *peers);
+    if (!scene) return scene.error();
+    printScene(*scene);
+    results.scenes.push_back(scene.take());
+  }
+  if (!options.growth) return {};
+  Result<std::vector<Growth>> growth = measureGrowth(**device, options);
+  if (!growth) return growth.error();
+  results.growth = growth.take();
+  return {};
+}
+
+Result<void> run(const Arguments& arguments) {
+  Result<BenchOptions> options = benchOptions(arguments);
+  if (!options) return options.error();
+  std::error_code problem;
+  std::filesystem::create_directories(options->output, problem);
+  if (problem) return Error{"io", problem.message(), options->output};
+  BenchResults results;
+  results.options = options.take();
+  results.version = LIMN_VERSION;
+  const double begin = nowSeconds();
+  if (Result<void> done = measure(results); !done) return done;
+  results.seconds = nowSeconds() - begin;
+  results.calibrations = calibrateAll(results.scenes);
+  if (Result<void> done = writeReport(results); !done) return done;
+  printSummary(results);
+  return {};
+}
+
+}  // namespace
+
+Command benchCommand() { return {benchSpec(), run}; }
+
+}  // namespace limn

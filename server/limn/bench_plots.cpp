@@ -1,0 +1,122 @@
+#include "server/limn/bench_plots.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "protocol/json_writer.hpp"
+#include "renderer/film/file_bytes.hpp"
+
+namespace limn::bench {
+namespace {
+
+Plot::Line errorLine(const Curve& curve, const std::string& title) {
+  Plot::Line line{title, {}};
+  for (const CurvePoint& point : curve.points) line.points.push_back({point.seconds, point.relMse});
+  return line;
+}
+
+void addErrorPlots(const BenchResults& results, std::vector<Plot>& plots) {
+  Plot all{"errors", "Speed against error", "seconds after the first step", "relMSE", {}};
+  Plot samples{"samples", "Error against samples", "samples of a pixel (harmonic mean)", "relMSE", {}};
+  for (const SceneResult& scene : results.scenes) {
+    Plot one{"error-" + scene.name, scene.name, "seconds after the first step", "relMSE", {}};
+    for (const Curve& curve : scene.curves) {
+      one.lines.push_back(errorLine(curve, curve.technique));
+      all.lines.push_back(errorLine(curve, scene.name + ", " + curve.technique));
+      Plot::Line line{scene.name + ", " + curve.technique, {}};
+      for (const CurvePoint& point : curve.points) line.points.push_back({point.samples, point.relMse});
+      samples.lines.push_back(line);
+    }
+    plots.push_back(one);
+  }
+  plots.push_back(all);
+  plots.push_back(samples);
+}
+
+void addCalibrationPlot(const BenchResults& results, std::vector<Plot>& plots) {
+  Plot plot{"calibration", "What the film says of its error", "true relMSE", "estimated relMSE", {}, true};
+  for (const TechniqueCalibration& calibration : results.calibrations) {
+    Plot::Line line{calibration.technique, {}};
+    for (const SceneResult& scene : results.scenes)
+      for (const Run& run : scene.runs)
+        for (const Checkpoint& c : run.checkpoints)
+          if (run.technique == calibration.technique) line.points.push_back({c.relMse, c.estimate});
+    plot.lines.push_back(line);
+  }
+  plots.push_back(plot);
+}
+
+void addGrowthPlots(const BenchResults& results, std::vector<Plot>& plots) {
+  std::map<std::string, Plot> byAxis;
+  for (const Growth& growth : results.growth) {
+    const Plot empty{"growth-" + growth.axis, "Growth with " + growth.axis, growth.axis, "seconds a step", {}};
+    Plot& plot = byAxis.try_emplace(growth.axis, empty).first->second;
+    Plot::Line line{growth.technique, {}};
+    for (const Growth::Point& point : growth.points) line.points.push_back({point.size, point.stepSeconds});
+    plot.lines.push_back(line);
+  }
+  for (const auto& [axis, plot] : byAxis) plots.push_back(plot);
+}
+
+/// Between single quotes; the titles come from file names.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? "''" : c == '\n' ? " " : std::string(1, c);
+  return result + "'";
+}
+
+bool drawable(const Sample& point) {
+  return point.x > 0.0 && point.y > 0.0 && std::isfinite(point.x) && std::isfinite(point.y);
+}
+
+}  // namespace
+
+std::vector<Plot> plotsOf(const BenchResults& results) {
+  std::vector<Plot> plots;
+  addErrorPlots(results, plots);
+  addCalibrationPlot(results, plots);
+  addGrowthPlots(results, plots);
+  // A log axis needs something to show.
+  for (Plot& plot : plots)
+    for (Plot::Line& line : plot.lines) std::erase_if(line.points, [](const Sample& p) { return !drawable(p); });
+  for (Plot& plot : plots) std::erase_if(plot.lines, [](const Plot::Line& line) { return line.points.empty(); });
+  std::erase_if(plots, [](const Plot& plot) { return plot.lines.empty(); });
+  return plots;
+}
+
+std::string gnuplotScript(const Plot& plot, const std::string& directory) {
+  std::string script, drawing;
+  for (size_t i = 0; i < plot.lines.size(); ++i) {
+    const std::string block = "$line" + std::to_string(i);
+    script += block + " << EOD\n";
+    for (const Sample& point : plot.lines[i].points)
+      script += protocol::javascriptNumber(point.x) + " " + protocol::javascriptNumber(point.y) + "\n";
+    script += "EOD\n";
+    drawing += (i ? ", " : "") + block + " using 1:2 with " + (plot.dots ? "points" : "linespoints linewidth 2") +
+               " pointtype 7 pointsize 0.5 title " + quoted(plot.lines[i].title);
+  }
+  if (plot.dots) drawing += ", x with lines linecolor rgb 'gray' title 'estimate = truth'";
+  script += "set logscale xy\nset format xy '%g'\nset grid\nset key outside right noenhanced\n";
+  script += "set title " + quoted(plot.title) + " noenhanced\n";
+  script += "set xlabel " + quoted(plot.xLabel) + "\nset ylabel " + quoted(plot.yLabel) + "\n";
+  const std::string file = (std::filesystem::path(directory) / plot.name).string();
+  script += "set terminal svg size 860,520 font 'sans,13' background rgb 'white'\nset output " + quoted(file + ".svg");
+  script += "\nplot " + drawing + "\nset terminal png size 860,520\nset output " + quoted(file + ".png");
+  script += "\nreplot\nunset output\nreset\n";
+  return script;
+}
+
+Result<bool> drawPlots(const std::vector<Plot>& plots, const std::string& directory) {
+  std::string script;
+  for (const Plot& plot : plots) script += gnuplotScript(plot, directory);
+  const std::string file = (std::filesystem::path(directory) / "plots.gnuplot").string();
+  const Result<void> written =
+      writeFileAtomically(file, {reinterpret_cast<const uint8_t*>(script.data()), script.size()});
+  if (!written) return written.error();
+  std::string word = "'";
+  for (const char c : file) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return std::system(("gnuplot " + word + "' >/dev/null 2>&1").c_str()) == 0;
+}
+
+}  // namespace limn::bench

@@ -1,0 +1,232 @@
+#include <cmath>
+
+#include "protocol/json_writer.hpp"
+#include "server/limn/bench_results.hpp"
+#include "server/limn/hex_text.hpp"
+
+namespace limn::bench {
+namespace {
+
+using protocol::javascriptNumber;
+using protocol::JsonWriter;
+
+std::string csvField(const std::string& text) {
+  if (text.find_first_of(",\"\n") == text.npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string csvNumber(double value) { return std::isfinite(value) ? javascriptNumber(value) : ""; }
+
+std::string csvLine(const std::vector<std::string>& fields) {
+  std::string line;
+  for (size_t i = 0; i < fields.size(); ++i) line += (i ? "," : "") + csvField(fields[i]);
+  return line + "\n";
+}
+
+const std::vector<std::string> kColumns = {
+    "scene",     "technique", "seed", "budget", "seconds",  "steps",    "samples",       "gatheredShare",    "relMse",
+    "relMseAll", "estimate",  "low",  "high",   "nonFinite", "filmHash", "raysPerSecond", "discardedSamples"};
+
+std::vector<std::string> rowOf(const SceneResult& scene, const Run& run, const Budget& budget, const Checkpoint& c) {
+  return {scene.name, run.technique, std::to_string(run.seed), budget.text, csvNumber(c.seconds),
+          std::to_string(c.steps), csvNumber(c.samples), csvNumber(c.gatheredShare), csvNumber(c.relMse),
+          csvNumber(c.relMseAll), csvNumber(c.estimate), csvNumber(c.low), csvNumber(c.high),
+          std::to_string(c.nonFinite), hexText(c.filmHash), csvNumber(run.status.raysPerSecond),
+          std::to_string(run.status.discardedSamples)};
+}
+
+/// Another renderer's picture has no run of ours.
+std::vector<std::string> rowOf(const SceneResult& scene, const Curve& curve, const CurvePoint& point) {
+  std::vector<std::string> row(kColumns.size());
+  row[0] = scene.name;
+  row[1] = curve.technique;
+  row[3] = point.budget;
+  row[4] = csvNumber(point.seconds);
+  row[8] = csvNumber(point.relMse);
+  row[9] = csvNumber(point.relMseAll);
+  return row;
+}
+
+bool hasRun(const SceneResult& scene, const Curve& curve) {
+  for (const Run& run : scene.runs)
+    if (run.technique == curve.technique) return true;
+  return false;
+}
+
+void writeFit(JsonWriter& json, const char* name, const std::optional<PowerFit>& fit) {
+  if (!fit) return;
+  json.key(name);
+  json.beginObject();
+  json.field("exponent", fit->exponent);
+  json.field("exponentDeviation", fit->exponentDeviation);
+  json.field("factor", fit->factor);
+  json.endObject();
+}
+
+void writePoint(JsonWriter& json, const CurvePoint& point) {
+  json.beginObject();
+  json.field("budget", point.budget);
+  json.field("seconds", point.seconds);
+  json.field("steps", point.steps);
+  json.field("samples", point.samples);
+  json.field("gatheredShare", point.gatheredShare);
+  json.field("relMse", point.relMse);
+  json.field("relMseAll", point.relMseAll);
+  json.field("spread", point.spread);
+  json.field("toldSpread", point.toldSpread);
+  if (point.parts) {
+    json.field("noise", point.parts->noise);
+    json.field("biasSquared", point.parts->biasSquared);
+    json.field("biasDeviation", point.parts->biasDeviation);
+  }
+  json.endObject();
+}
+
+void writeTimes(JsonWriter& json, const Curve& curve) {
+  json.key("secondsToError");
+  json.beginArray();
+  for (size_t i = 0; i < curve.times.size(); ++i) {
+    const TimeToError& time = curve.times[i];
+    json.beginObject();
+    json.field("relMse", kErrorLevels[i]);
+    json.field("seconds", time.seconds);
+    json.field("is", std::string(time.when == TimeToError::When::at      ? "interpolated"
+                                 : time.when == TimeToError::When::never ? "longer than"
+                                                                         : "at most"));
+    json.endObject();
+  }
+  json.endArray();
+}
+
+void writeCurve(JsonWriter& json, const Curve& curve) {
+  json.beginObject();
+  json.field("technique", curve.technique);
+  json.key("points");
+  json.beginArray();
+  for (const CurvePoint& point : curve.points) writePoint(json, point);
+  json.endArray();
+  writeTimes(json, curve);
+  writeFit(json, "slope", curve.slope);
+  writeFit(json, "slopeAll", curve.slopeAll);
+  json.endObject();
+}
+
+void writeRun(JsonWriter& json, const Run& run) {
+  json.beginObject();
+  json.field("technique", run.technique);
+  json.field("seed", run.seed);
+  json.field("buildSeconds", run.buildSeconds);
+  json.field("warmUpSeconds", run.warmUpSeconds);
+  json.field("raysPerSecond", run.status.raysPerSecond);
+  json.field("discardedSamples", run.status.discardedSamples);
+  json.field("memory", run.status.memory);
+  json.field("ran", run.status.ran);
+  json.field("leftOut", run.status.leftOut);
+  json.endObject();
+}
+
+void writeScene(JsonWriter& json, const SceneResult& scene) {
+  json.beginObject();
+  json.field("scene", scene.name);
+  json.field("sceneHash", scene.hash);
+  json.field("triangles", scene.triangles);
+  json.field("unsupported", scene.unsupported);
+  json.key("reference");
+  json.beginObject();
+  json.field("samples", scene.referenceSamples);
+  json.field("seconds", scene.referenceSeconds);
+  json.field("noise", scene.referenceNoise);
+  json.field("smallestError", scene.smallestError);
+  json.field("fineEnough", scene.referenceFineEnough);
+  json.endObject();
+  json.key("curves");
+  json.beginArray();
+  for (const Curve& curve : scene.curves) writeCurve(json, curve);
+  json.endArray();
+  json.key("runs");
+  json.beginArray();
+  for (const Run& run : scene.runs) writeRun(json, run);
+  json.endArray();
+  json.endObject();
+}
+
+void writeCalibration(JsonWriter& json, const char* name, const Calibration& calibration) {
+  json.key(name);
+  json.beginObject();
+  json.field("count", calibration.count);
+  json.field("heldShare", calibration.heldShare);
+  json.field("medianRatio", calibration.medianRatio);
+  json.endObject();
+}
+
+void writeGrowth(JsonWriter& json, const Growth& growth) {
+  json.beginObject();
+  json.field("technique", growth.technique);
+  json.field("axis", growth.axis);
+  json.key("points");
+  json.beginArray();
+  for (const Growth::Point& point : growth.points) {
+    json.beginObject();
+    json.field("size", point.size);
+    json.field("stepSeconds", point.stepSeconds);
+    json.field("megabytes", point.megabytes);
+    json.field("buildSeconds", point.buildSeconds);
+    json.endObject();
+  }
+  json.endArray();
+  writeFit(json, "time", growth.time);
+  writeFit(json, "memory", growth.memory);
+  writeFit(json, "build", growth.build);
+  json.endObject();
+}
+
+template <class List, class Write>
+void writeList(JsonWriter& json, const char* name, const List& list, Write write) {
+  json.key(name);
+  json.beginArray();
+  for (const auto& item : list) write(json, item);
+  json.endArray();
+}
+
+}  // namespace
+
+std::string resultsCsv(const BenchResults& results) {
+  std::string text = csvLine(kColumns);
+  for (const SceneResult& scene : results.scenes) {
+    for (const Run& run : scene.runs)
+      for (size_t i = 0; i < run.checkpoints.size(); ++i)
+        text += csvLine(rowOf(scene, run, results.options.budgets[i], run.checkpoints[i]));
+    for (const Curve& curve : scene.curves)
+      if (!hasRun(scene, curve))
+        for (const CurvePoint& point : curve.points) text += csvLine(rowOf(scene, curve, point));
+  }
+  return text;
+}
+
+std::string resultsJson(const BenchResults& results) {
+  JsonWriter json;
+  json.beginObject();
+  json.field("version", results.version);
+  json.field("device", results.device);
+  json.field("driver", results.driver);
+  json.field("width", results.options.width);
+  json.field("height", results.options.height);
+  json.field("seeds", results.options.seeds);
+  json.field("seconds", results.seconds);
+  json.field("absent", results.absent);
+  writeList(json, "scenes", results.scenes, writeScene);
+  writeList(json, "calibration", results.calibrations, [](JsonWriter& out, const TechniqueCalibration& c) {
+    out.beginObject();
+    out.field("technique", c.technique);
+    writeCalibration(out, "relMse", c.trimmed);
+    writeCalibration(out, "relMseAll", c.all);
+    out.endObject();
+  });
+  writeList(json, "growth", results.growth, writeGrowth);
+  json.endObject();
+  return json.take() + "\n";
+}
+
+}  // namespace limn::bench
