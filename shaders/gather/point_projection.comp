@@ -1,0 +1,300 @@
+// Light gathered at sites by splatting points into a micro-buffer; one workgroup a site. Two points of every cluster
+// explore how much of the view it fills, the rest is drawn from clusters in that proportion. [IPP §3.2, §4]
+// LIMN_GATHER_POINTS: sites are the points' sides. LIMN_GATHER_DUMP: pixels, and each writes its micro-buffer instead.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/shared/bvh_shared.h"
+#include "shaders/shared/gather_shared.h"
+#include "shaders/shared/point_shared.h"
+#include "shaders/lib/scene_bindings.glsl"
+layout(constant_id = 10) const bool kUseSharp = true;
+#include "shaders/lib/lobe_split.glsl"
+#include "shaders/lib/environment.glsl"
+#include "shaders/lib/micro_buffer.glsl"
+
+layout(constant_id = 16) const bool kUseGlossySources = true;  // points may have lobes
+layout(constant_id = 17) const uint kGroup = 64u;
+layout(constant_id = 18) const uint kSelection = 0u;           // kByImportance...
+layout(constant_id = 19) const uint kSplatSide = 0u;           // [texel] of all splats; 0: what they stand for
+layout(constant_id = 20) const bool kSeeEnvironment = false;   // in directions that no point covers
+
+const uint kByImportance = 0u, kAtRandom = 1u, kEveryPoint = 2u;
+const uint kMostTexels = 1024u, kMostProjections = 4096u, kMostClusters = 1024u, kMostGroup = 128u;
+const uint kExplored = 2u;       // points of a cluster
+const uint kWidestSplat = 16u;   // [texel]
+const uint kEmpty = 0xffffffffu;
+const uint kSequenceBits = 12u, kSequenceMask = kMostProjections - 1u;
+
+layout(local_size_x = 64, local_size_x_id = 17) in;
+layout(binding = BINDING_PIXEL_LIST, scalar) readonly buffer SiteList { uint siteList[]; };
+layout(binding = BINDING_POINTS) uniform usamplerBuffer points;
+layout(binding = BINDING_POINT_RADIANCE) uniform samplerBuffer pointRadiance;
+layout(binding = BINDING_POINT_LOBES, scalar) readonly buffer Lobes { PointLobes pointLobes[]; };
+#ifdef LIMN_GATHER_POINTS
+layout(binding = BINDING_POINT_LIGHT, scalar) buffer Light { PointLight pointLight[]; };
+#else
+layout(binding = BINDING_G_BUFFER, scalar) readonly buffer Sites { GatherSite sites[]; };
+#ifdef LIMN_GATHER_DUMP
+layout(binding = BINDING_OUTPUT, scalar) writeonly buffer Dump { vec4 texelsOut[]; };  // rgb radiance, w: covered
+#else
+layout(binding = BINDING_INDIRECT, scalar) buffer Indirect { IndirectTexel indirect[]; };
+#endif
+#endif
+layout(push_constant, scalar) uniform Push { PointProjectionPush push; };
+
+shared uint micro[kMostTexels];             // nearest: squared distance in the high bits, then the projection
+shared uint projected[kMostProjections];    // 2 * point + side of each projection; cluster of each sample before that
+shared uint clusterRun[kMostClusters];      // random bits; then first sample of the cluster | first point << 12
+shared float importance[kMostClusters];      // of clusters; sums of invocations after that
+shared float sumOfLanes[kMostGroup];
+
+#include "shaders/gather/gather_site.glsl"
+
+// Squared distance in 20 bits, for the nearest to win: the rest of the word tells equals apart.
+uint depthKey(float d2) { return (floatBitsToUint(d2) << 1) & ~kSequenceMask; }
+
+// First texel and end of the square that a point's disk covers. [IPP §3.2]
+ivec4 splatOf(View v, float area) {
+  float sum = abs(v.local.x) + abs(v.local.y) + v.local.z;
+  vec3 q = v.local / sum;
+  float inverse = inversesqrt(v.d2), size = float(push.microSize);
+  float texels = diskSolidAngle(v, area) * inverse * size * size / microSolidAngle(q);
+  float side = clamp(floor(sqrt(texels) + 0.5), 1.0, float(kWidestSplat));
+  if (kSplatSide != 0u) side = float(kSplatSide);
+  ivec2 first = ivec2(floor(microFromOctahedron(q) * size - 0.5 * (side - 1.0)));
+  ivec2 end = min(first + int(side), ivec2(push.microSize));
+  return v.above ? ivec4(clamp(first, ivec2(0), ivec2(push.microSize - 1u)), end) : ivec4(0);
+}
+
+void splat(View v, float area, uint key) {
+  ivec4 square = splatOf(v, area);
+  for (int y = square.y; y < square.w; ++y)
+    for (int x = square.x; x < square.z; ++x) atomicMin(micro[uint(y) * push.microSize + uint(x)], key);
+}
+
+uint facing(uint point, View v) { return 2u * point + (v.sinkCosine < 0.0 ? 1u : 0u); }
+
+uint wrap(uint slot) { return slot >= push.clusterUsed ? slot % push.clusterUsed : slot; }
+
+float pointArea() { return push.areaPerPoint * (float(push.clusterSize) / float(push.clusterUsed)); }
+
+// Estimated share of the view of each cluster. [IPP eq. 1, eq. 4]
+void explore(Site s, uint key) {
+  uint lane = gl_LocalInvocationIndex;
+  float area = pointArea() * float(push.clusterUsed) / float(kExplored), sum = 0.0;
+  for (uint k = lane; k < push.clusterCount; k += kGroup) {
+    uint bits = hash(key ^ k * 0x9e3779b9u);
+    clusterRun[k] = bits;
+    float total = 0.0;
+    for (uint j = 0u; j < kExplored; ++j) {
+      uint point = k * push.clusterSize + wrap(bits % push.clusterUsed + j), number = kExplored * k + j;
+      View v = look(s, point);
+      projected[number] = facing(point, v);
+      splat(v, area, depthKey(v.d2) | number);
+      float solidAngle = diskSolidAngle(v, area) / v.d2;  // the two lengths in it are taken out
+      float value = v.local.z * s.albedo;
+      if (kUseSpecular) {
+        float inverse = inversesqrt(v.d2), schlick;
+        float glossy = glossyValue(s, vec3(v.local.xy, max(v.local.z, 0.0)) * inverse, schlick);
+        value = value * kInvPi + glossy * sqrt(v.d2) * luminance(s.f0 + (s.f90 - s.f0) * schlick);
+      }
+      if (kUseGlossySources) value *= glossyStrength(facing(point, v), -v.d * inversesqrt(v.d2));
+      total += v.above ? max(value * solidAngle, 0.0) : 0.0;
+    }
+    importance[k] = kSelection == kAtRandom ? 1.0 : total;
+    sum += kSelection == kAtRandom ? 1.0 : total;
+  }
+  sumOfLanes[lane] = sum;
+}
+
+// Shares out exactly `samples` samples: what one cluster is given too much or too little, the next one settles.
+// [IPP §3.2]
+void allocate(uint samples) {
+  float sum = 0.0;
+  for (uint i = 0u; i < kGroup; ++i) sum += sumOfLanes[i];
+  bool blind = !(sum > 1e-30);  // no cluster matters more than another
+  float perImportance = float(samples) / (blind ? float(push.clusterCount) : sum), carry = 0.0;
+  uint given = 0u;
+  for (uint k = 0u; k < push.clusterCount; ++k) {
+    uint bits = clusterRun[k];
+    float expected = (blind ? 1.0 : importance[k]) * perImportance;
+    importance[k] = expected;
+    float wanted = expected + carry;
+    uint count = uint(max(wanted, 0.0));
+    wanted -= float(count);
+    bool more = toUnit(bits) < wanted;
+    count += more ? 1u : 0u;
+    carry = more ? wanted - 1.0 : wanted;
+    // Rounding may leave one too many or too few; it is the last cluster's.
+    count = k + 1u == push.clusterCount ? samples - given : min(count, samples - given);
+    clusterRun[k] = given | (bits % push.clusterUsed) << kSequenceBits;
+    given += count;
+  }
+}
+
+uint firstSample(uint cluster) { return clusterRun[cluster] & kSequenceMask; }
+
+// Writes the cluster of each sample to projected[]: the first of each run is marked, then every invocation fills a
+// stretch.
+void findClusters(uint base, uint samples) {
+  uint lane = gl_LocalInvocationIndex;
+  for (uint i = lane; i < samples; i += kGroup) projected[base + i] = 0u;
+  barrier();
+  for (uint k = lane; k < push.clusterCount; k += kGroup) {
+    uint end = k + 1u < push.clusterCount ? firstSample(k + 1u) : samples;
+    if (end > firstSample(k)) projected[base + firstSample(k)] = k;
+  }
+  barrier();
+  uint stretch = (samples + kGroup - 1u) / kGroup, first = min(lane * stretch, samples);
+  uint cluster = 0u;
+  for (uint step = kMostClusters / 2u; step > 0u; step >>= 1) {
+    uint next = cluster + step;
+    cluster = next < push.clusterCount && firstSample(min(next, kMostClusters - 1u)) <= first ? next : cluster;
+  }
+  for (uint i = first; i < min(first + stretch, samples); ++i) {
+    cluster = max(cluster, projected[base + i]);
+    projected[base + i] = cluster;
+  }
+  barrier();
+}
+
+// A run of points of every cluster, after the two that explored it: their order is progressive, so that any run is spread
+// over the cluster.
+void exploit(Site s, uint key, uint base, uint samples) {
+  for (uint i = gl_LocalInvocationIndex; i < samples; i += kGroup) {
+    uint number = base + i, cluster = projected[number], run = clusterRun[cluster];
+    uint slot = wrap((run >> kSequenceBits) + kExplored + (i - (run & kSequenceMask)));
+    if (kSelection == kAtRandom) slot = hash(key + i * 0x85ebca6bu) % push.clusterUsed;
+    uint point = cluster * push.clusterSize + slot;
+    View v = look(s, point);
+    float share = clamp(importance[cluster], 1.0, float(push.clusterUsed));
+    projected[number] = facing(point, v);
+    splat(v, pointArea() * float(push.clusterUsed) / share, depthKey(v.d2) | number);
+  }
+}
+
+// Every point stands for itself alone; the nearest distance first, then the point that has it. [IPP fig. 7]
+void projectAll(Site s) {
+  uint count = push.clusterCount * push.clusterUsed;
+  for (uint turn = 0u; turn < 2u; ++turn) {
+    for (uint i = gl_LocalInvocationIndex; i < count; i += kGroup) {
+      uint point = i / push.clusterUsed * push.clusterSize + i % push.clusterUsed;
+      View v = look(s, point);
+      ivec4 square = splatOf(v, pointArea());
+      for (int y = square.y; y < square.w; ++y)
+        for (int x = square.x; x < square.z; ++x) {
+          uint texel = uint(y) * push.microSize + uint(x), depth = floatBitsToUint(v.d2);
+          if (turn == 0u) atomicMin(micro[texel], depth);
+          else if (micro[texel] == depth) atomicMin(projected[texel], facing(point, v));
+        }
+    }
+    barrier();
+  }
+}
+
+// Radiance that texel `i` sees and 1, or 0 where it sees nothing.
+vec4 seen(Site s, uint i, vec3 dirW) {
+  uint word = micro[i];
+  bool covered = word != kEmpty;
+  uint entry = covered ? projected[kSelection == kEveryPoint ? i : word & kSequenceMask] : 0u;
+  vec4 radiance = texelFetch(pointRadiance, int(entry));
+  if (kUseGlossySources && covered && radiance.w > 0.0) radiance.rgb += lobeRadiance(entry >> 1, -dirW);
+  if (covered) return vec4(radiance.rgb, 1.0);
+  return vec4(kSeeEnvironment && s.valid ? environmentRadiance(dirW) : vec3(0.0), 0.0);
+}
+
+vec3 toWorldOf(Site s, vec3 w) { return s.t * w.x + s.b * w.y + s.n * w.z; }
+
+// What the micro-buffer brings to the site, summed over the texels of this invocation.
+IndirectTexel reduce(Site s) {
+  IndirectTexel sum = IndirectTexel(vec3(0.0), 0.0, vec3(0.0), kIndirectSampled);
+  float texelArea = 1.0 / float(push.microSize * push.microSize);
+  vec3 perF0 = 1.0 / max(s.f0, vec3(kLeastF0));
+  for (uint i = gl_LocalInvocationIndex; i < push.microSize * push.microSize; i += kGroup) {
+    vec3 q = microTexel(i, push.microSize), wi = normalize(q);
+    float solidAngle = microSolidAngle(q) * texelArea;
+    vec3 radiance = seen(s, i, toWorldOf(s, wi)).rgb * solidAngle;
+    sum.diffuse += radiance * (wi.z * kInvPi);
+    if (kUseSpecular) {
+      float schlick, value = glossyValue(s, wi, schlick);
+      sum.glossy += radiance * value * ((s.f0 + (s.f90 - s.f0) * schlick) * perF0);
+    }
+  }
+  return sum;
+}
+
+// The same for the site, summed in the order of invocations. In the first one.
+IndirectTexel reduceAll(Site s) {
+  uint lane = gl_LocalInvocationIndex;
+  IndirectTexel sum = reduce(s);
+  float words[6] = float[6](sum.diffuse.x, sum.diffuse.y, sum.diffuse.z, sum.glossy.x, sum.glossy.y, sum.glossy.z);
+  barrier();
+  for (uint c = 0u; c < 6u; ++c) importance[c * kGroup + lane] = words[c];
+  barrier();
+  for (uint half_ = kGroup / 2u; half_ > 0u; half_ /= 2u) {
+    if (lane < half_)
+      for (uint c = 0u; c < 6u; ++c) importance[c * kGroup + lane] += importance[c * kGroup + lane + half_];
+    barrier();
+  }
+  sum.diffuse = vec3(importance[0], importance[kGroup], importance[2u * kGroup]);
+  sum.glossy = vec3(importance[3u * kGroup], importance[4u * kGroup], importance[5u * kGroup]);
+  return sum;
+}
+
+#if defined(LIMN_GATHER_DUMP)
+void writeResult(Site s, uint entry) {
+  uint count = push.microSize * push.microSize;
+  for (uint i = gl_LocalInvocationIndex; i < count; i += kGroup)
+    texelsOut[entry * count + i] = seen(s, i, toWorldOf(s, normalize(microTexel(i, push.microSize))));
+}
+#elif defined(LIMN_GATHER_POINTS)
+void writeLight(Site s, IndirectTexel light) {
+  if ((s.id & 1u) == 0u) pointLight[s.id >> 1].indirectFront = light.diffuse;
+  else pointLight[s.id >> 1].indirectBack = light.diffuse;
+}
+#else
+void writeLight(Site s, IndirectTexel light) {
+  IndirectTexel before = indirect[s.id];
+  if (push.round == 0u || before.state != kIndirectSampled) before = IndirectTexel(vec3(0.0), 0.0, vec3(0.0), 0.0);
+  light.count = before.count + 1.0;
+  light.diffuse = before.diffuse + (light.diffuse - before.diffuse) / light.count;
+  light.glossy = before.glossy + (light.glossy - before.glossy) / light.count;
+  indirect[s.id] = light;
+}
+#endif
+#ifndef LIMN_GATHER_DUMP
+void writeResult(Site s, uint entry) {
+  IndirectTexel light = reduceAll(s);
+  if (gl_LocalInvocationIndex == 0u) writeLight(s, light);
+}
+#endif
+
+void project(Site s) {
+  if (kSelection == kEveryPoint) {
+    projectAll(s);
+    return;
+  }
+  uint key = hashCombine(hashCombine(s.id + 1u, push.round), push.seed);
+  uint base = kExplored * push.clusterCount, samples = push.projections - base;
+  explore(s, key);
+  barrier();
+  if (gl_LocalInvocationIndex == 0u) allocate(samples);
+  barrier();
+  findClusters(base, samples);
+  exploit(s, key, base, samples);
+  barrier();
+}
+
+void main() {
+  uint entry = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  if (entry >= push.entryCount) return;
+  Site s = makeSite(siteList[push.firstEntry + entry]);
+  for (uint i = gl_LocalInvocationIndex; i < kMostTexels; i += kGroup) {
+    micro[i] = kEmpty;
+    if (kSelection == kEveryPoint) projected[i] = kEmpty;
+  }
+  barrier();
+  if (s.valid) project(s);  // else the micro-buffer stays empty; the same for the whole workgroup
+  writeResult(s, entry);
+}
