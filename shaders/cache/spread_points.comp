@@ -11,13 +11,36 @@ layout(local_size_x = 64) in;
 layout(binding = BINDING_POINT_LIGHT, scalar) buffer Light { PointLight pointLight[]; };
 layout(push_constant, scalar) uniform Push { SpreadPush push; };
 
-// A side that knows no neighbour of its own kind, as on a small object between larger ones, asks all surfaces near it.
-vec3 arrivingAt(vec3 posR, vec3 normal, uint side) {
-  const float kKnown = 0.1;
-  GridLight own = lookUpPointGrid(posR, normal, side);
-  if (own.weight >= kKnown) return own.indirect;
-  GridLight any = lookUpPointGrid(posR, normal, kGridEither);
-  return any.weight > own.weight ? any.indirect : own.indirect;
+struct Sides {
+  vec3 front, back;  // sums of light times weight
+  float weight;
+};
+
+void add(inout Sides sum, float weight, vec3 front, vec3 back) {
+  sum.front += weight * front;
+  sum.back += weight * back;
+  sum.weight += weight;
+}
+
+// What arrives at both sides of a point in one walk through the cells around it, as two calls of lookUpPointGrid() would
+// tell: `own` from points that face the same way, `turned` from those that face the other, their sides exchanged.
+void addNeighbours(vec3 posR, vec3 normal, inout Sides own, inout Sides turned) {
+  PointGridInfo info = pointGridInfo();
+  ivec3 base = ivec3(floor(clamp((posR - info.originR) * info.cellsPerM - 0.5, vec3(-1.0e6), vec3(1.0e6))));
+  for (int c = 0; c < 8; ++c) {
+    uint bucket = pointGridBucket(base + ivec3(c & 1, c >> 1 & 1, c >> 2), info.bucketMask);
+    uint first = texelFetch(pointGrid, int(kPointGridInfoWords + bucket)).x;
+    uint end = min(texelFetch(pointGrid, int(kPointGridInfoWords + bucket + 1u)).x, first + kPointGridMaxEntries);
+    for (uint e = first; e < end; ++e) {
+      uint point = texelFetch(pointGridEntries, int(e)).x;
+      uvec4 raw = texelFetch(gridPoints, int(point));
+      float cosine = dot(octDecode(raw.w), normal);
+      float weight = pointGridWeight(uintBitsToFloat(raw.xyz) - posR, normal, abs(cosine), info.radius);
+      vec3 front = gridPointLights[point].indirectFront, back = gridPointLights[point].indirectBack;
+      add(own, cosine > 0.0 ? weight : 0.0, front, back);
+      add(turned, cosine > 0.0 ? 0.0 : weight, back, front);
+    }
+  }
 }
 
 void main() {
@@ -25,10 +48,12 @@ void main() {
   if (i >= push.slotCount * push.clusterCount) return;
   uint point = i / push.slotCount * push.clusterSize + push.firstSlot + i % push.slotCount;
   uvec4 raw = texelFetch(gridPoints, int(point));
-  vec3 posR = uintBitsToFloat(raw.xyz), normal = octDecode(raw.w);
-  for (uint side = kGridFront; side <= kGridBack; ++side) {
-    vec3 arriving = arrivingAt(posR, side == kGridFront ? normal : -normal, side);
-    if (side == kGridFront) pointLight[point].indirectFront = arriving;
-    else pointLight[point].indirectBack = arriving;
-  }
+  Sides own = Sides(vec3(0.0), vec3(0.0), 0.0), turned = own;
+  addNeighbours(uintBitsToFloat(raw.xyz), octDecode(raw.w), own, turned);
+  // A point without neighbours of its kind, as on a small object between larger ones, takes what all surfaces near it have.
+  const float kKnown = 0.1;
+  if (own.weight < kKnown) own = Sides(own.front + turned.front, own.back + turned.back, own.weight + turned.weight);
+  float scale = own.weight > 0.0 ? 1.0 / own.weight : 0.0;
+  pointLight[point].indirectFront = own.front * scale;
+  pointLight[point].indirectBack = own.back * scale;
 }
