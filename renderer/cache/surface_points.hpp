@@ -28,14 +28,12 @@ class SurfacePoints {
   Result<Update> update(vk::Device& device, const Scene& scene, const gpu::DeviceScene& mirror, uint32_t count,
                         uint32_t clusters, uint32_t seed);
 
-  uint32_t count() const {
-    return uint32_t(m_points.size());
-  }  ///< 0 in scenes without area; buffers hold one dummy then
+  /// 0 in scenes without area; the buffers hold one dummy then.
+  uint32_t count() const { return uint32_t(m_points.size()); }
   uint32_t clusterCount() const { return m_clusterCount; }
   uint32_t clusterSize() const { return m_clusterCount > 0 ? count() / m_clusterCount : 0; }
-  double areaPerPoint() const {
-    return m_areaPerPoint;
-  }  ///< [m²], of the surfaces as they are placed; 0 without points
+  /// [m²], of the surfaces as they are placed; 0 without points.
+  double areaPerPoint() const { return m_areaPerPoint; }
   /// Of the least even block, see relativeRadius() in point_sampling.hpp; blocks of under 16 points do not count.
   double relativeRadius() const { return m_relativeRadius; }
   /// POINTS (texel) and POINT_SITES (storage). After a successful update.

@@ -1,5 +1,6 @@
 // Means of what surface points near a position carry. BINDING_POINT_GRID and BINDING_POINT_GRID_ENTRIES are built by
-// renderer/cache/point_grid.cpp, whose pointWeight() and bucketOf() say the same as those here.
+// renderer/cache/point_grid.cpp, whose pointWeight() and bucketOf() say the same as those here. A look-up turns its inner
+// loop at most 8 * kPointGridMaxEntries = 512 times.
 #ifndef LIMN_POINT_GRID_GLSL
 #define LIMN_POINT_GRID_GLSL
 #include "shaders/lib/math.glsl"
@@ -50,7 +51,7 @@ float pointGridWeight(vec3 apart, vec3 normal, float cosine, float radius) {
   return near * near * level * level * max(cosine, 0.0);
 }
 
-// Mean indirect light at posR on the side that the unit `normal` points to, over the lit points of the grid near it. `sides`
+// Mean indirect light at posR on the side that the unit `normal` points to, over the points of the grid near it. `sides`
 // says which sides of the points count: that of the surface seen, kGridFront or kGridBack, or kGridEither.
 GridLight lookUpPointGrid(vec3 posR, vec3 normal, uint sides) {
   GridLight result = GridLight(vec3(0.0), 0.0);
@@ -77,7 +78,10 @@ GridLight lookUpPointGrid(vec3 posR, vec3 normal, uint sides) {
   return result;
 }
 
-// The same where the side of the surface is not known, as one value; 0 where nothing is known.
+// The same as one value, 0 where nothing is known; without `frontFace` where the side of the surface is not known.
+vec3 pointIrradiance(vec3 posR, vec3 normal, bool frontFace) {
+  return lookUpPointGrid(posR, normal, frontFace ? kGridFront : kGridBack).indirect;
+}
 vec3 pointIrradiance(vec3 posR, vec3 normal) { return lookUpPointGrid(posR, normal, kGridEither).indirect; }
 
 #endif

@@ -136,15 +136,135 @@ TEST(PointSampling, PrefixesAreFarApartToo) {
     EXPECT_GE(relativeRadius(corners, std::span(sites).first(n)), 0.6) << n << " of " << c.most;
 }
 
-TEST(PointSampling, DISABLED_Speed) {
-  for (const uint32_t n : {262144u, 1048576u}) {
-    const Corners corners = ball(128);
-    const double start = nowSeconds();
-    const std::vector<BlockSite> sites = sampleBlock(corners, countClassOf(n), 5);
-    std::cout << sites.size() << " points in " << nowSeconds() - start << " s\n";
-    const double middle = nowSeconds();
-    std::cout << relativeRadius(corners, sites) << " in " << nowSeconds() - middle << " s\n";
+/// Points of 64 equal parts of the surface: far more even than chance, so the statistic of Pearson's test is far below
+/// its mean for random points, which is the number of degrees of freedom.
+TEST(PointSampling, EveryPartHasItsShare) {
+  constexpr uint32_t kRow = 8, kCount = 4096;
+  const Corners square = unitSquare();
+  std::vector<double> counts(kRow * kRow, 0.0);
+  for (const glm::dvec3& p : positionsOf(square, sampleBlock(square, {kCount, kCount}, 11)))
+    counts[std::min(uint32_t(p.x * kRow), kRow - 1) * kRow + std::min(uint32_t(p.y * kRow), kRow - 1)] += 1.0;
+  const GoodnessOfFit fit = chiSquare(counts, std::vector<double>(kRow * kRow, double(kCount) / (kRow * kRow)));
+  std::cout << "chi square of 64 squares " << fit.statistic << '\n';
+  EXPECT_LT(fit.statistic, 0.35 * fit.dof) << fit.worst;
+}
+
+/// The faces of a thin plate are faces like others, and triangles of all sizes get points by their area.
+TEST(PointSampling, ThinPlatesAndMixedTrianglesHaveTheirShare) {
+  SceneBuilder b;
+  const uint32_t m = b.diffuse(glm::vec3(0.5f));
+  b.box(m, {0, 0, 0}, {1, 1, 0.002f});                    // 2.008 of area in a thin plate
+  b.quad(m, {3, 0, 0}, {4, 0, 0}, {4, 1, 0}, {3, 1, 0});  // 1
+  b.sphere(m, {6, 0, 0}, 0.4f, 32);                       // about 2
+  const Corners corners = cornersOf(b.scene);
+  constexpr uint32_t kCount = 8192;
+  std::vector<double> counts(4, 0.0), expected(4, 0.0);
+  const auto part = [&](size_t t) {
+    const glm::vec3* c = &corners[t * 3];
+    if (c->x > 5.0f) return size_t(3);
+    if (c->x > 2.0f) return size_t(2);
+    return size_t(glm::cross(c[1] - c[0], c[2] - c[0]).z > 0.5f);
+  };
+  for (const BlockSite& site : sampleBlock(corners, {kCount, kCount}, 12)) counts[part(site.triangle)] += 1.0;
+  for (size_t t = 0; t * 3 < corners.size(); ++t)
+    expected[part(t)] += kCount * areaOf(std::span(corners).subspan(t * 3, 3)) / areaOf(corners);
+  for (size_t i = 0; i < 4; ++i) EXPECT_NEAR(counts[i], expected[i], 0.03 * expected[i]) << "part " << i;
+}
+
+TEST(PointSampling, SameArgumentsGiveTheSameBits) {
+  // More candidates than one core thins out, so that parts are shared.
+  const Corners corners = ball(24);
+  const std::vector<BlockSite> first = sampleBlock(corners, {30000, 30000}, 9);
+  EXPECT_EQ(first, sampleBlock(corners, {30000, 30000}, 9));
+  EXPECT_NE(first, sampleBlock(corners, {30000, 30000}, 10));
+  const double radius = relativeRadius(corners, first);
+  std::cout << "relative radius of 30,000 points thinned in parts " << radius << '\n';
+  EXPECT_GE(radius, 0.6);
+}
+
+TEST(PointSampling, ScaleDoesNotMatter) {
+  const Corners corners = ball(12);
+  const std::vector<BlockSite> sites = sampleBlock(corners, {500, 500}, 2);
+  for (const float scale : {0x1p-40f, 0x1p20f, 0x1p50f}) {
+    Corners scaled = corners;
+    for (glm::vec3& c : scaled) c *= scale;
+    EXPECT_EQ(sampleBlock(scaled, {500, 500}, 2), sites) << scale;
+    EXPECT_DOUBLE_EQ(relativeRadius(scaled, sites), relativeRadius(corners, sites));
   }
+}
+
+TEST(PointSampling, DegenerateTrianglesGetNothing) {
+  Corners corners = unitSquare();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const glm::vec3 c : {glm::vec3(5.0f), glm::vec3(5.0f), glm::vec3(5.0f),  // a point
+                            glm::vec3(0.0f), glm::vec3(1.0f), glm::vec3(2.0f),  // a line
+                            glm::vec3(nan), glm::vec3(1.0f), glm::vec3(2.0f, 0.0f, 0.0f)})
+    corners.push_back(c);
+  const std::vector<BlockSite> sites = sampleBlock(corners, {1000, 1000}, 2);
+  ASSERT_EQ(sites.size(), 1000u);
+  for (const BlockSite& site : sites) ASSERT_LT(site.triangle, 2u);
+  EXPECT_GE(relativeRadius(corners, sites), 0.6);
+  EXPECT_TRUE(sampleBlock(std::span(corners).subspan(6), {10, 10}, 2).empty());
+  EXPECT_TRUE(sampleBlock({}, {10, 10}, 2).empty());
+}
+
+/// One triangle, a needle, and a thousand sheets in one place: exact counts on the triangles, in good time.
+TEST(PointSampling, HardBlocksEndWell) {
+  const Corners one{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  EXPECT_GE(relativeRadius(one, sampleBlock(one, {2048, 2048}, 1)), 0.6);
+
+  const Corners needle{{0, 0, 0}, {1, 0, 0}, {1, 1e-9f, 0}};
+  const std::vector<BlockSite> onNeedle = sampleBlock(needle, {5000, 5000}, 1);
+  EXPECT_EQ(onNeedle.size(), 5000u);
+  expectSitesOnTriangles(needle, onNeedle);
+
+  Corners sheets;
+  for (int i = 0; i < 1000; ++i) sheets.insert(sheets.end(), one.begin(), one.end());
+  const double start = nowSeconds();
+  const std::vector<BlockSite> onSheets = sampleBlock(sheets, {20000, 20000}, 1);
+  EXPECT_EQ(onSheets.size(), 20000u);
+  expectSitesOnTriangles(sheets, onSheets);
+  EXPECT_LT(nowSeconds() - start, 10.0);
+}
+
+TEST(PointSampling, QuarterMillionInTime) {
+  const Corners corners = ball(128);
+  const double start = nowSeconds();
+  const std::vector<BlockSite> sites = sampleBlock(corners, countClassOf(262144), 5);
+  const double seconds = nowSeconds() - start;
+  std::cout << "262,144 points in one block: " << seconds << " s, relative radius " << relativeRadius(corners, sites)
+            << '\n';
+  EXPECT_LT(seconds, 15.0);
+}
+
+TEST(BlockMetric, TurningAndMovingKeepTheStretch) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const glm::dmat3 shape(glm::dvec3(1.0, 0.0, 0.0), glm::dvec3(0.3, 2.0, 0.0), glm::dvec3(0.1, 0.2, 0.7));
+  for (int i = 0; i < 100; ++i) {
+    const glm::dquat q = glm::normalize(glm::dquat(normal(random), normal(random), normal(random), normal(random)));
+    EXPECT_EQ(roundedStretch(glm::mat3_cast(q) * shape), roundedStretch(shape));
+    EXPECT_EQ(roundedStretch(glm::mat3_cast(q)), glm::dmat3(1.0));
+  }
+  EXPECT_EQ(roundedStretch(glm::dmat3(1.004)), glm::dmat3(1.0));
+  EXPECT_NE(roundedStretch(glm::dmat3(1.012)), glm::dmat3(1.0));
+  EXPECT_EQ(roundedStretch(glm::dmat3(0.0)), glm::dmat3(0.0));
+}
+
+TEST(BlockMetric, LengthsAreKept) {
+  const glm::dmat3 m(glm::dvec3(1.0, 0.2, 0.1), glm::dvec3(-0.3, 2.0, 0.0), glm::dvec3(0.4, 0.2, 5.0));
+  const glm::dmat3 u = roundedStretch(m);
+  for (const glm::dvec3& v :
+       {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 1, 1), glm::dvec3(-1, 2, 0.5)})
+    EXPECT_NEAR(glm::length(u * v), glm::length(m * v), 0.015 * glm::length(m * v));
+}
+
+TEST(ShareOut, AddsUpAndFollowsTheWeights) {
+  EXPECT_EQ(shareOut(10, {1.0, 1.0, 1.0}), (std::vector<uint32_t>{4, 3, 3}));
+  EXPECT_EQ(shareOut(7, {0.0, 5.0, 0.0}), (std::vector<uint32_t>{0, 7, 0}));
+  EXPECT_EQ(shareOut(7, {0.0, 0.0}), (std::vector<uint32_t>{0, 0}));
+  EXPECT_TRUE(shareOut(7, {}).empty());
+  EXPECT_EQ(shareOut(2, {1.0, 1.5, 1.0, 1.5}), (std::vector<uint32_t>{0, 1, 0, 1}));
 }
 
 }  // namespace
