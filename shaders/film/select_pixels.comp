@@ -5,13 +5,12 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/film.glsl"
+#include "shaders/lib/workgroup_scan.glsl"
 
 layout(local_size_x = 256) in;
 layout(binding = BINDING_PIXEL_LIST, scalar) writeonly buffer PixelList { uint pixelList[]; };
 layout(binding = BINDING_OUTPUT, scalar) buffer TileCounts { uint tileCounts[]; };  // and the total behind the last tile
 layout(push_constant, scalar) uniform Push { SelectPush push; };
-
-shared uint scan[256];
 
 // Standard error of the mean luminance relative to the pixel and a tenth of the picture, as relMSE weighs it.
 float relativeError(ivec2 p) {
@@ -29,20 +28,6 @@ bool active_(ivec2 p) {
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx) worst = max(worst, relativeError(p + ivec2(dx, dy)));
   return worst > push.threshold;
-}
-
-// Inclusive prefix sum over the workgroup.
-uint scanInclusive(uint value) {
-  uint l = gl_LocalInvocationIndex;
-  scan[l] = value;
-  for (uint step = 1u; step < 256u; step <<= 1) {
-    barrier();
-    uint left = l >= step ? scan[l - step] : 0u;
-    barrier();
-    scan[l] += left;
-  }
-  barrier();
-  return scan[l];
 }
 
 void placeTiles() {

@@ -1,0 +1,50 @@
+#include "renderer/reconstruct/joint_bilateral.hpp"
+
+#include "shaders/shared/bindings.h"
+
+namespace limn {
+namespace {
+
+constexpr uint32_t kGroup = 64, kGroupWidth = 16, kGroupHeight = 4;  // of the shaders
+
+uint32_t groups(uint32_t items, uint32_t size) { return (items + size - 1) / size; }
+
+std::vector<vk::Binding> interpolateBindings(const ReconstructBuffers& b) {
+  return {vk::storage(BINDING_G_BUFFER, b.sites), vk::storage(BINDING_INDIRECT, b.gathered)};
+}
+std::vector<vk::Binding> filterBindings(const ReconstructBuffers& b) {
+  return gpu::joined(interpolateBindings(b), {vk::storage(BINDING_INDIRECT_OUT, b.filtered)});
+}
+
+}  // namespace
+
+Result<void> JointBilateral::prepare(vk::Device& device, const ReconstructBuffers& buffers, uint32_t width, uint32_t height) {
+  m_width = width;
+  m_height = height;
+  if (m_interpolate && m_filter) return {};
+  const auto interpolating = interpolateBindings(buffers), filtering = filterBindings(buffers);
+  auto interpolate = gpu::Pass::create(device, "interpolate", interpolating, sizeof(shared::ReconstructPush));
+  if (!interpolate) return interpolate.error();
+  auto filter = gpu::Pass::create(device, "filter_indirect", filtering, sizeof(shared::ReconstructPush));
+  if (!filter) return filter.error();
+  m_interpolate = interpolate.take();
+  m_filter = filter.take();
+  return gpu::runNow(device, [&](vk::CommandRecorder& r) {
+    m_interpolate.warmUp(r, interpolating);
+    m_filter.warmUp(r, filtering);
+  });
+}
+
+void JointBilateral::recordInterpolate(vk::CommandRecorder& recorder, const ReconstructBuffers& buffers, uint32_t stride) const {
+  const uint32_t columns = groups(m_width, stride), rows = gridRows(stride);
+  const shared::ReconstructPush push{m_width, m_height, stride, 0, 0, rows};
+  m_interpolate.record(recorder, interpolateBindings(buffers), push, groups(columns * rows, kGroup));
+  recorder.barrier();
+}
+
+void JointBilateral::recordFilter(vk::CommandRecorder& recorder, const ReconstructBuffers& buffers, uint32_t size, RowRange rows) const {
+  const shared::ReconstructPush push{m_width, m_height, 1, (size - 1) / 2, rows.first, rows.count};
+  m_filter.record(recorder, filterBindings(buffers), push, groups(m_width, kGroupWidth), groups(rows.count, kGroupHeight));
+}
+
+}  // namespace limn
