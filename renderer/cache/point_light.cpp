@@ -184,6 +184,7 @@ void PointLightCache::recordSpread(vk::CommandRecorder& recorder, const PointLig
                                    const std::vector<vk::Binding>& grid, SlotRange slots) const {
   const uint32_t slotCount = slotsOf(slots);
   if (slotCount == 0) return;
+  LIMN_CHECK(bool(m_spread));  // prepareSpread() comes first
   const shared::SpreadPush push{slots.first, slotCount, m_layout.clusterCount, m_layout.clusterSize};
   m_spread.record(recorder, spreadBindings(context, grid), push, workgroups(slotCount * m_layout.clusterCount));
   recorder.barrier();
