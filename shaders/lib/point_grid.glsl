@@ -9,7 +9,7 @@
 #include "shaders/shared/point_shared.h"
 
 layout(binding = BINDING_POINTS) uniform usamplerBuffer gridPoints;
-layout(binding = BINDING_POINT_LIGHT, scalar) readonly buffer GridPointLights { PointLight gridPointLights[]; };
+layout(binding = BINDING_POINT_LIGHT, scalar) readonly buffer GridLights { PointLight gridPointLights[]; };
 layout(binding = BINDING_POINT_GRID) uniform usamplerBuffer pointGrid;
 layout(binding = BINDING_POINT_GRID_ENTRIES) uniform usamplerBuffer pointGridEntries;
 
