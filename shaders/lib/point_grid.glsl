@@ -1,6 +1,6 @@
 // Means of what surface points near a position carry. BINDING_POINT_GRID and BINDING_POINT_GRID_ENTRIES are built by
-// renderer/cache/point_grid.cpp, whose pointWeight() and bucketOf() say the same as those here. A look-up turns its inner
-// loop at most 8 * kPointGridMaxEntries = 512 times.
+// renderer/cache/point_grid.cpp, whose pointWeight() and bucketOf() say the same as those here. The inner loop of a
+// look-up turns at most 8 * kPointGridMaxEntries = 512 times.
 #ifndef LIMN_POINT_GRID_GLSL
 #define LIMN_POINT_GRID_GLSL
 #include "shaders/lib/math.glsl"
@@ -16,11 +16,11 @@ layout(binding = BINDING_POINT_GRID_ENTRIES) uniform usamplerBuffer pointGridEnt
 // Which sides of the points count.
 const uint kGridFront = 0u;   // those that the geometric normal points to
 const uint kGridBack = 1u;
-const uint kGridEither = 2u;  // of every point the side that faces the way of the normal; mixes the faces of thin bodies
+const uint kGridEither = 2u;  // of every point the side that faces along the normal; mixes the faces of thin bodies
 
 struct GridLight {
   vec3 indirect;  // irradiance / pi, weighted mean; 0 without weight
-  float weight;   // sum of weights; about 3 amid an even, lit surface; under 0.1 nothing near is known
+  float weight;   // sum of weights: about 3 amid an even surface, above 0.5 all over it, near 0 where little is known
 };
 
 PointGridInfo pointGridInfo() {
@@ -51,8 +51,8 @@ float pointGridWeight(vec3 apart, vec3 normal, float cosine, float radius) {
   return near * near * level * level * max(cosine, 0.0);
 }
 
-// Mean indirect light at posR on the side that the unit `normal` points to, over the points of the grid near it. `sides`
-// says which sides of the points count: that of the surface seen, kGridFront or kGridBack, or kGridEither.
+// Mean indirect light at posR on the side that the unit `normal` points to, over the points of the grid near it.
+// `sides` says which sides of the points count: that of the surface seen, kGridFront or kGridBack, or kGridEither.
 GridLight lookUpPointGrid(vec3 posR, vec3 normal, uint sides) {
   GridLight result = GridLight(vec3(0.0), 0.0);
   PointGridInfo info = pointGridInfo();

@@ -6,7 +6,7 @@
 namespace limn::shared {
 #endif
 
-// Head of POINT_GRID, floats as their bits; the first entries of the buckets follow, and one more as the end of the last.
+// Head of POINT_GRID, floats as their bits; the first entries of the buckets follow, and the end of the last one.
 struct PointGridInfo {
   vec3 originR;      // [m], corner of cell (0, 0, 0)
   float cellsPerM;   // [1/m]; a cell is twice as wide as points reach; 0: the grid is empty
