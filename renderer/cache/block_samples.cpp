@@ -83,18 +83,18 @@ uint32_t BlockSampling::update(const Scene& scene, const std::vector<gpu::Geomet
   std::vector<uint32_t> work;
   uint32_t sampled = 0;
   for (uint32_t i = 0; i < blocks.size(); ++i) {
-    stale[i] = stale[i] || m_points[i].sites.size() != countClassOf(counts[i]).most;
-    if (stale[i] || m_points[i].count != counts[i]) work.push_back(i);
-    sampled += stale[i] && counts[i] > 0;
+    if (stale[i] || m_points[i].sites.size() != countClassOf(counts[i]).most) work.push_back(i);
+    m_points[i].count = counts[i];
   }
+  for (const uint32_t i : work) sampled += counts[i] > 0;
   std::stable_sort(work.begin(), work.end(), [&](uint32_t a, uint32_t b) { return counts[a] > counts[b]; });
   parallelFor(work.size(), [&](size_t w) {
-    const uint32_t i = work[w];
-    BlockPoints& points = m_points[i];
-    const std::vector<glm::vec3> corners = stretchedCorners(primitiveOf(scene, blocks[i]), m_sources[i].stretch);
-    if (stale[i]) points.sites = sampleBlock(corners, countClassOf(counts[i]), m_sources[i].seed);
-    points.count = counts[i];
-    points.relativeRadius = relativeRadius(corners, std::span(points.sites).first(points.count));
+    BlockPoints& points = m_points[work[w]];
+    const Source& source = m_sources[work[w]];
+    const std::vector<glm::vec3> corners = stretchedCorners(primitiveOf(scene, blocks[work[w]]), source.stretch);
+    const CountClass counted = countClassOf(points.count);
+    points.sites = sampleBlock(corners, counted, source.seed);
+    points.relativeRadius = relativeRadius(corners, std::span(points.sites).first(counted.least));
   });
   return sampled;
 }

@@ -13,7 +13,7 @@ namespace limn {
 struct BlockPoints {
   std::vector<BlockSite> sites;  ///< of the whole class; the first `count` are in use
   uint32_t count = 0;
-  double relativeRadius = 1.0;  ///< of the sites in use
+  double relativeRadius = 1.0;   ///< of the smallest set of the class; the others are about as good
 };
 
 /// Points of every block of a scene, sampled in the block's own space under its rounded stretch: where a block stands
