@@ -1,4 +1,4 @@
-// Sites of gathers, points as sites see them, and the lobes of both. Included by point_projection.comp after its bindings.
+// Sites of gathers, points as sites see them, and the lobes of both. Included after the bindings.
 #ifndef LIMN_GATHER_SITE_GLSL
 #define LIMN_GATHER_SITE_GLSL
 

@@ -12,6 +12,7 @@ layout(constant_id = 10) const bool kUseSharp = true;
 #include "shaders/lib/lobe_split.glsl"
 #include "shaders/lib/environment.glsl"
 #include "shaders/lib/micro_buffer.glsl"
+#include "shaders/gather/allocation.glsl"
 
 layout(constant_id = 16) const bool kUseGlossySources = true;  // points may have lobes
 layout(constant_id = 17) const uint kGroup = 64u;
@@ -20,11 +21,10 @@ layout(constant_id = 19) const uint kSplatSide = 0u;           // [texel] of all
 layout(constant_id = 20) const bool kSeeEnvironment = false;   // in directions that no point covers
 
 const uint kByImportance = 0u, kAtRandom = 1u, kEveryPoint = 2u;
-const uint kMostTexels = 1024u, kMostProjections = 4096u, kMostClusters = 1024u, kMostGroup = 128u;
+const uint kMostTexels = 1024u, kMostProjections = kMostSamples, kMostGroup = 128u;
 const uint kExplored = 2u;       // points of a cluster
 const uint kWidestSplat = 16u;   // [texel]
 const uint kEmpty = 0xffffffffu;
-const uint kSequenceBits = 12u, kSequenceMask = kMostProjections - 1u;
 
 layout(local_size_x = 64, local_size_x_id = 17) in;
 layout(binding = BINDING_PIXEL_LIST, scalar) readonly buffer SiteList { uint siteList[]; };
@@ -45,14 +45,12 @@ layout(push_constant, scalar) uniform Push { PointProjectionPush push; };
 
 shared uint micro[kMostTexels];             // nearest: squared distance in the high bits, then the projection
 shared uint projected[kMostProjections];    // 2 * point + side of each projection; cluster of each sample before that
-shared uint clusterRun[kMostClusters];      // random bits; then first sample of the cluster | first point << 12
-shared float importance[kMostClusters];      // of clusters; sums of invocations after that
 shared float sumOfLanes[kMostGroup];
 
 #include "shaders/gather/gather_site.glsl"
 
 // Squared distance in 20 bits, for the nearest to win: the rest of the word tells equals apart.
-uint depthKey(float d2) { return (floatBitsToUint(d2) << 1) & ~kSequenceMask; }
+uint depthKey(float d2) { return (floatBitsToUint(d2) << 1) & ~kSampleMask; }
 
 // First texel and end of the square that a point's disk covers. [IPP §3.2]
 ivec4 splatOf(View v, float area) {
@@ -108,33 +106,6 @@ void explore(Site s, uint key) {
   sumOfLanes[lane] = sum;
 }
 
-// Shares out exactly `samples` samples: what one cluster is given too much or too little, the next one settles.
-// [IPP §3.2]
-void allocate(uint samples) {
-  float sum = 0.0;
-  for (uint i = 0u; i < kGroup; ++i) sum += sumOfLanes[i];
-  bool blind = !(sum > 1e-30);  // no cluster matters more than another
-  float perImportance = float(samples) / (blind ? float(push.clusterCount) : sum), carry = 0.0;
-  uint given = 0u;
-  for (uint k = 0u; k < push.clusterCount; ++k) {
-    uint bits = clusterRun[k];
-    float expected = (blind ? 1.0 : importance[k]) * perImportance;
-    importance[k] = expected;
-    float wanted = expected + carry;
-    uint count = uint(max(wanted, 0.0));
-    wanted -= float(count);
-    bool more = toUnit(bits) < wanted;
-    count += more ? 1u : 0u;
-    carry = more ? wanted - 1.0 : wanted;
-    // Rounding may leave one too many or too few; it is the last cluster's.
-    count = k + 1u == push.clusterCount ? samples - given : min(count, samples - given);
-    clusterRun[k] = given | (bits % push.clusterUsed) << kSequenceBits;
-    given += count;
-  }
-}
-
-uint firstSample(uint cluster) { return clusterRun[cluster] & kSequenceMask; }
-
 // Writes the cluster of each sample to projected[]: the first of each run is marked, then every invocation fills a
 // stretch.
 void findClusters(uint base, uint samples) {
@@ -159,12 +130,12 @@ void findClusters(uint base, uint samples) {
   barrier();
 }
 
-// A run of points of every cluster, after the two that explored it: their order is progressive, so that any run is spread
+// A run of points of every cluster, after the two that explored it: their order is progressive, so that a run is spread
 // over the cluster.
 void exploit(Site s, uint key, uint base, uint samples) {
   for (uint i = gl_LocalInvocationIndex; i < samples; i += kGroup) {
     uint number = base + i, cluster = projected[number], run = clusterRun[cluster];
-    uint slot = wrap((run >> kSequenceBits) + kExplored + (i - (run & kSequenceMask)));
+    uint slot = wrap((run >> kSampleBits) + kExplored + (i - (run & kSampleMask)));
     if (kSelection == kAtRandom) slot = hash(key + i * 0x85ebca6bu) % push.clusterUsed;
     uint point = cluster * push.clusterSize + slot;
     View v = look(s, point);
@@ -197,7 +168,7 @@ void projectAll(Site s) {
 vec4 seen(Site s, uint i, vec3 dirW) {
   uint word = micro[i];
   bool covered = word != kEmpty;
-  uint entry = covered ? projected[kSelection == kEveryPoint ? i : word & kSequenceMask] : 0u;
+  uint entry = covered ? projected[kSelection == kEveryPoint ? i : word & kSampleMask] : 0u;
   vec4 radiance = texelFetch(pointRadiance, int(entry));
   if (kUseGlossySources && covered && radiance.w > 0.0) radiance.rgb += lobeRadiance(entry >> 1, -dirW);
   if (covered) return vec4(radiance.rgb, 1.0);
@@ -279,7 +250,11 @@ void project(Site s) {
   uint base = kExplored * push.clusterCount, samples = push.projections - base;
   explore(s, key);
   barrier();
-  if (gl_LocalInvocationIndex == 0u) allocate(samples);
+  if (gl_LocalInvocationIndex == 0u) {
+    float sum = 0.0;
+    for (uint i = 0u; i < kGroup; ++i) sum += sumOfLanes[i];
+    allocate(samples, push.clusterCount, push.clusterUsed, sum);
+  }
   barrier();
   findClusters(base, samples);
   exploit(s, key, base, samples);
