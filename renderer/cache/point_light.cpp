@@ -104,12 +104,10 @@ Result<void> PointLightCache::makeCounters(vk::Device& device) {
 }
 
 std::vector<vk::Binding> PointLightCache::relightBindings(const PointLightContext& context) const {
-  auto all = gpu::joined(context.scene.bindings(), context.points);
-  return gpu::joined(
-      std::move(all),
-      {vk::texel(BINDING_BVH_NODES, context.bvh.nodes()), vk::texel(BINDING_BVH_TRIANGLES, context.bvh.triangles()),
-       vk::storage(BINDING_POINT_LIGHT, m_light), vk::storage(BINDING_POINT_LOBES, m_lobes),
-       vk::storage(BINDING_COUNTERS, m_counters)});
+  auto all = gpu::joined(gpu::joined(context.scene.bindings(), context.points), context.tracer.bindings());
+  return gpu::joined(std::move(all),
+                     {vk::storage(BINDING_POINT_LIGHT, m_light), vk::storage(BINDING_POINT_LOBES, m_lobes),
+                      vk::storage(BINDING_COUNTERS, m_counters)});
 }
 
 std::vector<vk::Binding> PointLightCache::composeBindings(const PointLightContext& context) const {

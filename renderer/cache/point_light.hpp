@@ -5,7 +5,7 @@
 #include "renderer/gpu/device_scene.hpp"
 #include "renderer/gpu/tailored_pass.hpp"
 #include "renderer/scene/scene_needs.hpp"
-#include "renderer/visibility/bvh.hpp"
+#include "renderer/visibility/scene_tracer.hpp"
 
 namespace limn {
 
@@ -16,7 +16,7 @@ bool hasGlossySources(const Scene& scene);
 struct PointLightContext {
   vk::Device& device;
   const gpu::DeviceScene& scene;
-  const SceneBvh& bvh;
+  const SceneTracer& tracer;
   std::vector<vk::Binding> points;  ///< of SurfacePoints: BINDING_POINTS and BINDING_POINT_SITES
 };
 

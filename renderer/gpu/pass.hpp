@@ -17,7 +17,7 @@ class Pass {
                              uint32_t pushConstantBytes, std::vector<uint32_t> specialization = {}) {
     vk::PipelineDesc desc;
     desc.name = shader;
-    desc.spirv = embeddedShader(shader);
+    desc.spirv = tracingVariant(shader, like);
     LIMN_CHECK(!desc.spirv.empty());
     for (const vk::Binding& binding : like) desc.layout.push_back({binding.binding, binding.kind});
     desc.pushConstantBytes = pushConstantBytes;
@@ -41,6 +41,15 @@ class Pass {
   explicit operator bool() const { return bool(m_pipeline); }
 
  private:
+  /// Where an acceleration structure is bound, a shader that traces (limn_tracing_shader in shaders.cmake) uses ray queries.
+  static std::span<const uint32_t> tracingVariant(const std::string& shader, const std::vector<vk::Binding>& like) {
+    for (const vk::Binding& binding : like) {
+      if (binding.kind != vk::BindingKind::acceleration) continue;
+      if (const auto twin = embeddedShader(shader + "_ray_query"); !twin.empty()) return twin;
+    }
+    return embeddedShader(shader);
+  }
+
   vk::ComputePipeline m_pipeline;
 };
 

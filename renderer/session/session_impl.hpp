@@ -9,7 +9,7 @@
 #include "renderer/session/restart_plan.hpp"
 #include "renderer/session/session.hpp"
 #include "renderer/techniques/technique.hpp"
-#include "renderer/visibility/bvh.hpp"
+#include "renderer/visibility/scene_tracer.hpp"
 
 namespace limn {
 
@@ -33,10 +33,11 @@ struct Session::Impl {
   Result<void> chooseTechnique(const std::string& name);
   Result<void> resize(uint32_t width, uint32_t height);
   Result<void> syncScene(const ChangeSet& changes);
-  Result<void> updateBvh(const gpu::SyncReport& report);
+  Result<void> updateTracer(const gpu::SyncReport& report);
   Result<void> writeCamera();
   Result<void> restartFilm(CostClass cost);
   TechniqueContext context();
+  std::vector<vk::Binding> pickBindings() const;
 
   // session_edits.cpp
   Result<void> drainMailbox();
@@ -84,7 +85,7 @@ struct Session::Impl {
   uint64_t lightingRevision = 0;  ///< of the derived data
 
   gpu::DeviceScene mirror;
-  SceneBvh bvh;
+  SceneTracer tracer;
   vk::Buffer camera, pickResult;
   gpu::Pass pickPass;
   std::optional<Film> film;

@@ -14,8 +14,7 @@ Result<void> Session::Impl::handle(const PickRequest& request) {
     replies.push(ErrorReply{request.from, {"out-of-range", "the pixel is outside the picture", request.x >= config.width ? "x" : "y"}});
     return {};
   }
-  const auto all = gpu::joined(mirror.bindings(), {vk::texel(BINDING_BVH_NODES, bvh.nodes()), vk::texel(BINDING_BVH_TRIANGLES, bvh.triangles()),
-                                                   vk::storage(BINDING_CAMERA, camera), vk::storage(BINDING_OUTPUT, pickResult)});
+  const auto all = pickBindings();
   const shared::GBufferPush push{request.x, request.y, 1, 1};
   if (auto done = gpu::runNow(device, [&](vk::CommandRecorder& r) { pickPass.record(r, all, push, 1); }); !done) return done;
   const shared::GBufferTexel hit = pickResult.as<shared::GBufferTexel>()[0];

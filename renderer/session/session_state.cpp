@@ -95,13 +95,13 @@ Result<void> Session::Impl::resize(uint32_t width, uint32_t height) {
 Result<void> Session::Impl::syncScene(const ChangeSet& changes) {
   auto synced = mirror.sync(scene, changes);
   if (!synced) return synced.error();
-  if (auto done = updateBvh(*synced); !done) return done;
+  if (auto done = updateTracer(*synced); !done) return done;
   needs = sceneNeeds(scene);
   ++lightingRevision;
   return {};
 }
 
-Result<void> Session::Impl::updateBvh(const gpu::SyncReport& synced) {
+Result<void> Session::Impl::updateTracer(const gpu::SyncReport& synced) {
   std::vector<uint32_t> changed = synced.movedBlocks;
   changed.insert(changed.end(), synced.alphaBlocks.begin(), synced.alphaBlocks.end());
   std::vector<TriangleBlock> blocks;
@@ -112,8 +112,8 @@ Result<void> Session::Impl::updateBvh(const gpu::SyncReport& synced) {
   std::sort(changed.begin(), changed.end());
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
   if (changed.empty() && !synced.reloaded) return {};
-  if (auto done = bvh.update(device, blocks, changed); !done) return done;
-  status.blocksRebuilt += bvh.stats().blocksRebuilt;
+  if (auto done = tracer.update(device, blocks, changed); !done) return done;
+  status.blocksRebuilt += tracer.blocksRebuilt();
   return {};
 }
 
@@ -139,16 +139,20 @@ Result<void> Session::Impl::writeCamera() {
 }
 
 TechniqueContext Session::Impl::context() {
-  return {device, scene, mirror, bvh, camera, *film, *statistics, config.seed, config.firstSample, lightingRevision,
+  return {device, scene, mirror, tracer, camera, *film, *statistics, config.seed, config.firstSample, lightingRevision,
           config.sampleCount};
+}
+
+std::vector<vk::Binding> Session::Impl::pickBindings() const {
+  auto all = gpu::joined(mirror.bindings(), tracer.bindings());
+  return gpu::joined(std::move(all), {vk::storage(BINDING_CAMERA, camera), vk::storage(BINDING_OUTPUT, pickResult)});
 }
 
 Result<void> Session::Impl::restartFilm(CostClass cost) {
   if (auto done = technique->prepare(context(), needs, cost >= CostClass::reload); !done) return done;
   if (auto done = technique->restart(context(), cost); !done) return done;
   if (!pickPass) {
-    auto all = gpu::joined(mirror.bindings(), {vk::texel(BINDING_BVH_NODES, bvh.nodes()), vk::texel(BINDING_BVH_TRIANGLES, bvh.triangles()),
-                                               vk::storage(BINDING_CAMERA, camera), vk::storage(BINDING_OUTPUT, pickResult)});
+    const auto all = pickBindings();
     auto pass = gpu::Pass::create(device, "g_buffer", all, sizeof(shared::GBufferPush));
     if (!pass) return pass.error();
     pickPass = pass.take();

@@ -126,9 +126,8 @@ Result<void> PathTracing::makeCounters(vk::Device& device) {
 
 std::vector<vk::Binding> PathTracing::bindings(const TechniqueContext& context, const vk::Buffer& list) const {
   auto all = gpu::joined(context.scene.bindings(), context.film.bindings());
-  return gpu::joined(std::move(all), {vk::texel(BINDING_BVH_NODES, context.bvh.nodes()),
-                                      vk::texel(BINDING_BVH_TRIANGLES, context.bvh.triangles()),
-                                      vk::storage(BINDING_CAMERA, context.camera), vk::storage(BINDING_PIXEL_LIST, list),
+  all = gpu::joined(std::move(all), context.tracer.bindings());
+  return gpu::joined(std::move(all), {vk::storage(BINDING_CAMERA, context.camera), vk::storage(BINDING_PIXEL_LIST, list),
                                       vk::storage(BINDING_COUNTERS, m_counters)});
 }
 

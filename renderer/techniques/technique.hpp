@@ -8,7 +8,7 @@
 #include "renderer/gpu/device_scene.hpp"
 #include "renderer/scene/scene_needs.hpp"
 #include "renderer/techniques/technique_info.hpp"
-#include "renderer/visibility/bvh.hpp"
+#include "renderer/visibility/scene_tracer.hpp"
 #include "renderer/vk/device.hpp"
 
 namespace limn {
@@ -18,7 +18,7 @@ struct TechniqueContext {
   vk::Device& device;
   const Scene& description;          ///< the plain data that `scene` mirrors
   const gpu::DeviceScene& scene;
-  const SceneBvh& bvh;
+  const SceneTracer& tracer;
   const vk::Buffer& camera;          ///< one shared::CameraData
   const Film& film;
   FilmStatistics& statistics;

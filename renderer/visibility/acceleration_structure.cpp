@@ -69,6 +69,7 @@ Result<void> SceneAcceleration::update(vk::Device& device, std::span<const Trian
   auto top = vk::AccelerationStructure::fromInstances(device, instances, "acceleration.top", "visibility");
   if (!top) return top.error();
   m_top = top.take();
+  m_blocksRebuilt = uint32_t(rebuild.size());
   return {};
 }
 

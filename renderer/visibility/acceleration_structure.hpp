@@ -10,8 +10,7 @@
 namespace limn {
 
 /// The scene's triangles in the device's own acceleration structures, for shaders/lib/trace_ray_query.glsl: what
-/// SceneBvh is to trace_walk.glsl. Only for devices with hasRayQuery(). It has been compiled but never run: no test
-/// machine had such a device. Render thread.
+/// SceneBvh is to trace_walk.glsl. Only for devices with hasRayQuery(). Render thread.
 class SceneAcceleration {
  public:
   /// As SceneBvh::update. Errors: "limit" (a triangle id over 24 bits), and those of vk::AccelerationStructure.
@@ -19,6 +18,8 @@ class SceneAcceleration {
 
   /// For the binding bvhAcceleration. Valid after the first update.
   const vk::AccelerationStructure& top() const { return m_top; }
+  /// Blocks whose own tree was built in the last update.
+  uint32_t blocksRebuilt() const { return m_blocksRebuilt; }
 
  private:
   struct Block {
@@ -29,6 +30,7 @@ class SceneAcceleration {
 
   std::vector<Block> m_blocks;
   vk::AccelerationStructure m_top;
+  uint32_t m_blocksRebuilt = 0;
 };
 
 }  // namespace limn

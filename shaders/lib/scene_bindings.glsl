@@ -1,6 +1,9 @@
 // The scene's bindings; every shader that traces includes this first.
 #ifndef LIMN_SCENE_BINDINGS_GLSL
 #define LIMN_SCENE_BINDINGS_GLSL
+#ifdef LIMN_RAY_QUERY
+#extension GL_EXT_ray_query : require
+#endif
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/scene_shared.h"
 
@@ -17,8 +20,12 @@ layout(constant_id = 7) const bool kUseTriangleLights = true;
 layout(constant_id = 8) const bool kUseEnvironment = true;
 layout(constant_id = 9) const bool kUseEnvironmentImage = true;
 
+#ifdef LIMN_RAY_QUERY
+layout(binding = BINDING_ACCELERATION) uniform accelerationStructureEXT bvhAcceleration;
+#else
 layout(binding = BINDING_BVH_NODES) uniform BVH_NODE_SAMPLER bvhNodes;
 layout(binding = BINDING_BVH_TRIANGLES) uniform samplerBuffer bvhTriangles;
+#endif
 layout(binding = BINDING_TRIANGLES) uniform usamplerBuffer triangles;          // corners' vertices, material
 layout(binding = BINDING_POSITIONS) uniform samplerBuffer positions;           // render space
 layout(binding = BINDING_VERTICES) uniform usamplerBuffer vertices;            // two texels a vertex, gpu/packing.hpp

@@ -1,7 +1,6 @@
 // The functions of trace.glsl by hardware ray queries, for devices that have them (vk::Device::hasRayQuery()). The
 // includer enables GL_EXT_ray_query, defines LIMN_RAY_QUERY and declares `accelerationStructureEXT bvhAcceleration`,
-// the top of SceneAcceleration. It is compiled with every build, but none of the machines that Limn was tested on
-// could run it. What differs: of hits at the same t any may be reported, and t > 0 is only as good as the hardware's.
+// the top of SceneAcceleration. What differs from the walk: of hits at the same t any may be reported, and t > 0 is only as good as the hardware's.
 #ifndef LIMN_TRACE_RAY_QUERY_GLSL
 #define LIMN_TRACE_RAY_QUERY_GLSL
 

@@ -60,7 +60,7 @@ class LitPoints {
     std::vector<TriangleBlock> blocks;
     for (size_t i = 0; i < m_mirror.blocks().size(); ++i)
       blocks.push_back({m_mirror.blocks()[i].corners, m_mirror.blocks()[i].firstTriangle, m_mirror.blockNeedsAlpha(i)});
-    must(m_bvh.update(device(), blocks, {}));
+    must(m_tracer.update(device(), blocks, {}));
     m_sites = inputOf(floorPoints().sites(m_mirror.blocks()[0].firstTriangle));
     must(cache().resize(device(), SquarePoints::kLayout, hasGlossySources(builder.scene)));
     must(cache().prepare(context(), sceneNeeds(builder.scene), compile));
@@ -105,14 +105,14 @@ class LitPoints {
 
  private:
   static vk::Device& device() { return SharedDevice::get(); }
-  PointLightContext context() const { return {device(), m_mirror, m_bvh, {vk::storage(BINDING_POINT_SITES, m_sites)}}; }
+  PointLightContext context() const { return {device(), m_mirror, m_tracer, {vk::storage(BINDING_POINT_SITES, m_sites)}}; }
   template <class T>
   static std::vector<T> read(const vk::Buffer& buffer, size_t aPoint) {
     return must(vk::readBackArray<T>(device(), buffer, SquarePoints::count() * aPoint));
   }
 
   gpu::DeviceScene m_mirror;
-  SceneBvh m_bvh;
+  SceneTracer m_tracer;
   vk::Buffer m_sites;
   uint64_t m_raysBefore = 0, m_discardedBefore = 0;
   static inline std::unique_ptr<PointLightCache> s_cache;

@@ -28,7 +28,7 @@ class Spread {
     must(grid.update(device, m_points, kKnownSlots));
 
     const PointLayout layout{m_points.clusterCount(), m_points.clusterSize()};
-    const SceneBvh unused;
+    const SceneTracer unused;
     const PointLightContext context{device, mirror, unused, m_points.bindings()};
     PointLightCache cache;
     must(cache.resize(device, layout, false));

@@ -68,15 +68,15 @@ FilmImage PathTracer::render(const Scene& scene, const RenderOptions& options) {
   std::vector<TriangleBlock> blocks;
   for (size_t i = 0; i < mirror.blocks().size(); ++i)
     blocks.push_back({mirror.blocks()[i].corners, mirror.blocks()[i].firstTriangle, mirror.blockNeedsAlpha(i)});
-  SceneBvh bvh;
-  require(bvh.update(p.device, blocks, {}));
+  SceneTracer tracer(options.method);
+  require(tracer.update(p.device, blocks, {}));
   const shared::CameraData camera = cameraData(scene.view, mirror.renderOrigin());
   require(vk::uploadArray(p.device, p.camera, std::span<const shared::CameraData>(&camera, 1)));
 
   const TechniqueContext context{.device = p.device,
                                  .description = scene,
                                  .scene = mirror,
-                                 .bvh = bvh,
+                                 .tracer = tracer,
                                  .camera = p.camera,
                                  .film = p.film,
                                  .statistics = p.statistics,

@@ -5,6 +5,7 @@
 
 #include "renderer/film/film_image.hpp"
 #include "renderer/scene/scene.hpp"
+#include "renderer/visibility/scene_tracer.hpp"
 #include "renderer/vk/device.hpp"
 
 namespace limn::test {
@@ -14,6 +15,7 @@ struct RenderOptions {
   uint32_t seed = 1;
   uint32_t maxBounces = 1000;  ///< closed forms know no limit
   uint32_t rouletteStart = 3;
+  TraceMethod method = TraceMethod::best;
 };
 
 /// The path-tracing technique with a film of kSize x kSize and without the session about it, so that a program with
