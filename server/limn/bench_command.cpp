@@ -66,7 +66,7 @@ Result<void> measure(BenchResults& results) {
   const Result<std::vector<PeerPicture>> peers = readPeerPictures(options.pictures);
   if (!peers) return peers.error();
   if (peers->empty())
-    results.absent.push_back("No other renderer's pictures were given (--pictures); tests/bench/peers makes some.");
+    results.absent.push_back("No other renderer's pictures were given with --pictures; tests/bench/peers makes some.");
   vk::DeviceOptions deviceOptions;
   deviceOptions.cacheDir = cacheDirectory();
   const Result<std::unique_ptr<vk::Device>> device = vk::Device::open(deviceOptions);

@@ -118,17 +118,18 @@ Result<std::optional<ErrorParts>> splitError(std::span<const RadianceView> pictu
   const double n = double(pictures.size());
   const std::vector<size_t> kept = keptValues(ofSeed);
   ErrorParts parts;
-  std::vector<double> bias;
+  std::vector<double> biasOfPixel(mean.values.size() / 3);  // channels err together, pixels hardly
   for (const size_t i : kept) {
     for (const std::vector<double>& quotients : ofSeed) parts.total += quotients[i] / n;
     const double noise = relativeVariance(pictures, mean, denominators[i], i);
     parts.noise += noise;
-    bias.push_back((*ofMean)[i] - noise / n);
+    biasOfPixel[i / 3] += (*ofMean)[i] - noise / n;
   }
-  parts.total /= double(kept.size());
-  parts.noise /= double(kept.size());
-  parts.biasSquared = meanOf(bias);
-  parts.biasDeviation = deviationOf(bias) / std::sqrt(double(kept.size()));
+  const double count = double(kept.size()), pixels = double(biasOfPixel.size());
+  parts.total /= count;
+  parts.noise /= count;
+  parts.biasSquared = meanOf(biasOfPixel) * pixels / count;
+  parts.biasDeviation = deviationOf(biasOfPixel) * std::sqrt(pixels) / count;
   return std::optional(parts);
 }
 

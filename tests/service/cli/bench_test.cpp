@@ -32,8 +32,8 @@ class Bench : public ::testing::Test {
   static std::string file(const std::string& name) { return s_scratch->file(name); }
 
   static test::ProgramRun run(const std::string& output, std::vector<std::string> flags) {
-    flags.insert(flags.begin(), {"bench", "--output", file(output), "--size", "64x64", "--references", file("references"),
-                                 "--reference-seconds", "0.2"});
+    flags.insert(flags.begin(), {"bench", "--output", file(output), "--size", "64x64", "--reference-seconds", "0.2",
+                                 "--references", file("references")});
     return test::runProgram(LIMN_PROGRAM, flags);
   }
 
