@@ -44,7 +44,7 @@ uint32_t AdaptiveGrid::gridCount(uint32_t stride) const {
 
 // A square of a power of two about the picture.
 uint32_t AdaptiveGrid::scatteredCount() const {
-  const auto bits = uint32_t(std::max(1, std::bit_width(std::max(m_width, m_height) - 1)));
+  const uint32_t bits = std::max<uint32_t>(1, uint32_t(std::bit_width(std::max(m_width, m_height) - 1)));
   return 1u << (2 * bits);
 }
 

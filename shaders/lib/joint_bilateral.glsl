@@ -63,14 +63,13 @@ LightMean meanOfCell(vec2 place, int stride, ivec2 size, vec3 posR, vec3 normal,
 const float kKnownWeight = 1e-3;  // under it the places around say nothing
 
 // Gathered light for a surface seen at `place` (continuous, 0,0 is the upper left corner of the picture), from a picture in which
-// every pixel has some. False where no pixel around sees the same surface.
-bool lookUpIndirect(vec2 place, ivec2 size, vec3 posR, vec3 normal, uint object, out IndirectTexel light) {
+// every pixel has some. Where no pixel around sees the same surface, the pixel's own is the best guess.
+void lookUpIndirect(vec2 place, ivec2 size, vec3 posR, vec3 normal, uint object, out IndirectTexel light) {
   LightMean m = meanOfCell(place - 0.5, 1, size, posR, normal, object);
   if (m.weight < kKnownWeight) m = meanAround(ivec2(place), 1, size, posR, normal, object);
-  bool known = m.weight >= kKnownWeight;
-  float scale = known ? 1.0 / m.weight : 0.0;
-  light = IndirectTexel(m.diffuse * scale, 0.0, m.glossy * scale, known ? kIndirectInterpolated : kIndirectNone);
-  return known;
+  ivec2 own = clamp(ivec2(place), ivec2(0), size - 1);
+  if (m.weight < kKnownWeight) m = LightMean(gathered[own.y * size.x + own.x].diffuse, gathered[own.y * size.x + own.x].glossy, 1.0);
+  light = IndirectTexel(m.diffuse / m.weight, 0.0, m.glossy / m.weight, kIndirectInterpolated);
 }
 
 #endif

@@ -13,6 +13,7 @@ layout(constant_id = 10) const bool kUseSharp = true;
 #define LIMN_ALPHA
 #define LIMN_ALPHA_ENABLED kUseAlpha
 #include "shaders/lib/shadow.glsl"
+#define LIMN_INDIRECT_ACCESS readonly
 #include "shaders/lib/joint_bilateral.glsl"
 #include "shaders/lib/point_grid.glsl"
 
@@ -89,14 +90,15 @@ void addLights(inout Walk w, Bsdf rough, Bsdf sharp, vec3 woW) {
   addRadiance(w, w.throughput * value * light.radiance * transmittance(w.absorption, rough, light), w.depth + 1u);
 }
 
-// At the first surface the pixels around know more; behind a mirror, and where none of them fits, the points do.
+// At the first surface the pixels around know more; behind a mirror the points do.
 void addGathered(inout Walk w, Bsdf rough, vec3 woW) {
   if (push.directOnly != 0u) return;
   vec3 albedo = gatheredAlbedo(rough) * underClearcoat(rough, woW), reflectance = gatheredReflectance(rough) * underClearcoat(rough, woW);
   IndirectTexel light;
-  bool found = w.depth == 0u && lookUpIndirect(w.pixel, rough.s.posR, rough.s.normal, rough.s.material, light);
-  if (!found) {
-    light.diffuse = pointIrradiance(rough.s.posR, rough.s.normal);
+  if (w.depth == 0u) {
+    lookUpIndirect(w.pixel, ivec2(camera.width, camera.height), rough.s.posR, rough.s.normal, rough.s.material, light);
+  } else {
+    light.diffuse = lookUpPointGrid(rough.s.posR, rough.s.normal, rough.s.frontFace ? kGridFront : kGridBack).indirect;
     light.glossy = light.diffuse;
   }
   w.gathered += w.throughput * (albedo * light.diffuse + reflectance * light.glossy);

@@ -1,0 +1,235 @@
+#include "renderer/techniques/point_projection.hpp"
+
+#include <bit>
+
+#include "renderer/techniques/point_projection_impl.hpp"
+#include "renderer/vk/transfer.hpp"
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/film_shared.h"
+#include "shaders/shared/gather_shared.h"
+
+namespace limn {
+namespace {
+
+/// Points at which bounces are gathered; the others interpolate.
+constexpr uint32_t kBouncePoints = 2048;
+/// Points stay where they are when the picture's seed changes.
+constexpr uint32_t kPointSeed = 1;
+
+std::vector<uint32_t> constantsOf(const SceneNeeds& needs) {
+  std::vector<uint32_t> words = gpu::needsConstants(needs);
+  words.push_back(needs.sharp);  // kUseSharp
+  return words;
+}
+
+Result<vk::Buffer> makeBuffer(vk::Device& device, const char* name, size_t size, vk::MemoryKind memory = vk::MemoryKind::deviceLocal) {
+  vk::BufferDesc desc;
+  desc.owner = "point-projection";
+  desc.name = name;
+  desc.size = size;
+  desc.memory = memory;
+  return vk::Buffer::create(device, desc);
+}
+
+}  // namespace
+
+PointProjectionTechnique::PointProjectionTechnique()
+    : m_sites("gather_sites", sizeof(shared::GatherSitesPush), &constantsOf),
+      m_shade("point_projection_shade", sizeof(shared::ShadePush), &constantsOf) {}
+
+void PointProjectionTechnique::setParameter(const std::string& name, double value) {
+  const auto whole = uint32_t(value);
+  PointProjectionSettings& s = m_settings;
+  const PointProjectionSettings before = s;
+  if (name == "points") s.points = whole;
+  else if (name == "clusters") s.clusters = std::bit_floor(whole);
+  else if (name == "projections") s.projections = whole;
+  else if (name == "microSize") s.microSize = whole;
+  else if (name == "bounces") s.bounces = whole;
+  else if (name == "relightSamples") s.relightSamples = whole;
+  else if (name == "startGrid") s.startGrid = std::bit_floor(whole);
+  else if (name == "threshold") s.threshold = float(value);
+  else if (name == "lambda") s.lambda = float(value);
+  else if (name == "filterSize") s.filterSize = whole | 1u;
+  else if (name == "maxSamples") s.maxSamples = whole;
+  if (s.points != before.points || s.clusters != before.clusters) m_pointsKnown = m_lit = false;
+  if (s.microSize != before.microSize || s.bounces != before.bounces || s.relightSamples != before.relightSamples) m_lit = false;
+}
+
+Result<void> PointProjectionTechnique::makeBuffers(const TechniqueContext& context) {
+  const uint32_t width = context.film.width(), height = context.film.height();
+  if (m_width == width && m_height == height) return {};
+  m_pixelOrder = makePixelOrder(width, height);
+  const size_t pixels = size_t(width) * height;
+  const struct {
+    vk::Buffer& buffer;
+    const char* name;
+    size_t bytes;
+  } kBuffers[] = {{m_order, "pointProjection.order", pixels * sizeof(uint32_t)},
+                  {m_list, "pointProjection.list", pixels * sizeof(uint32_t)},
+                  {m_siteBuffer, "pointProjection.sites", pixels * sizeof(shared::GatherSite)},
+                  {m_indirect, "pointProjection.indirect", pixels * sizeof(shared::IndirectTexel)},
+                  {m_filtered, "pointProjection.filtered", pixels * sizeof(shared::IndirectTexel)},
+                  {m_lookedUp, "pointProjection.lookedUp", pixels * sizeof(glm::vec4)}};
+  for (const auto& [buffer, name, bytes] : kBuffers) {
+    auto made = makeBuffer(context.device, name, bytes);
+    if (!made) return made.error();
+    buffer = made.take();
+  }
+  if (!m_counters) {
+    auto counters = makeBuffer(context.device, "pointProjection.counters", shared::kCounterWords * sizeof(uint32_t), vk::MemoryKind::readback);
+    if (!counters) return counters.error();
+    m_counters = counters.take();
+    if (auto done = vk::fill(context.device, m_counters, 0, m_counters.size(), 0); !done) return done;
+  }
+  m_width = width;
+  m_height = height;
+  return vk::uploadArray(context.device, m_order, std::span<const uint32_t>(m_pixelOrder.pixels));
+}
+
+// Points move with what they sit on, and everything that light meets or comes from changes what they carry.
+Result<void> PointProjectionTechnique::updatePoints(const TechniqueContext& context) {
+  if (m_pointsKnown && m_lightingRevision == context.lightingRevision) return {};
+  auto updated = m_points.update(context.device, context.description, context.scene, m_settings.points, m_settings.clusters, kPointSeed);
+  if (!updated) return updated.error();
+  m_lightingRevision = context.lightingRevision;
+  m_pointsKnown = true;
+  m_lit = false;
+  const PointLayout layout = m_points.count() > 0 ? PointLayout{m_points.clusterCount(), m_points.clusterSize()} : PointLayout{1, 1};
+  if (auto made = m_light.resize(context.device, layout, hasGlossySources(context.description)); !made) return made;
+  const uint32_t sides = 2 * layout.clusterCount;
+  m_bounceSlots = std::min(std::max(1u, kBouncePoints / layout.clusterCount), layout.clusterSize);
+  auto list = makeBuffer(context.device, "pointProjection.bounceList", size_t(sides) * m_bounceSlots * sizeof(uint32_t));
+  if (!list) return list.error();
+  m_bounceList = list.take();
+  return m_pointGrid.update(context.device, m_points, std::min(m_bounceSlots, m_points.clusterSize()));
+}
+
+PointLightContext PointProjectionTechnique::lightContext(const TechniqueContext& context) const {
+  return {context.device, context.scene, context.tracer, m_points.bindings()};
+}
+
+std::vector<vk::Binding> PointProjectionTechnique::sceneBindings(const TechniqueContext& context, const vk::Buffer& list) const {
+  return gpu::joined(gpu::joined(context.scene.bindings(), context.tracer.bindings()),
+                     {vk::storage(BINDING_CAMERA, context.camera), vk::storage(BINDING_PIXEL_LIST, list)});
+}
+
+std::vector<vk::Binding> PointProjectionTechnique::siteBindings(const TechniqueContext& context) const {
+  return gpu::joined(sceneBindings(context, m_order), {vk::storage(BINDING_G_BUFFER, m_siteBuffer)});
+}
+
+std::vector<vk::Binding> PointProjectionTechnique::gatherBindings(const TechniqueContext& context) const {
+  auto all = gpu::joined(gpu::joined(sceneBindings(context, m_list), m_points.bindings()), m_light.bindings());
+  return gpu::joined(std::move(all), {vk::storage(BINDING_G_BUFFER, m_siteBuffer), vk::storage(BINDING_INDIRECT, m_indirect)});
+}
+
+std::vector<vk::Binding> PointProjectionTechnique::bounceBindings(const TechniqueContext& context) const {
+  return gpu::joined(gpu::joined(sceneBindings(context, m_bounceList), m_points.bindings()), m_light.bindings());
+}
+
+std::vector<vk::Binding> PointProjectionTechnique::shadeBindings(const TechniqueContext& context) const {
+  auto all = gpu::joined(sceneBindings(context, m_order), context.film.bindings());
+  all = gpu::joined(gpu::joined(std::move(all), m_points.bindings()), m_pointGrid.bindings());
+  const vk::Buffer& indirect = m_useFiltered ? m_filtered : m_indirect;
+  return gpu::joined(std::move(all), {vk::storage(BINDING_POINT_LIGHT, m_light.light()), vk::storage(BINDING_COUNTERS, m_counters),
+                                      vk::storage(BINDING_INDIRECT, indirect), vk::storage(BINDING_G_BUFFER, m_siteBuffer),
+                                      vk::storage(BINDING_INDIRECT_SUM, m_lookedUp)});
+}
+
+Result<void> PointProjectionTechnique::prepare(const TechniqueContext& context, const SceneNeeds& needs, bool mayCompile) {
+  m_needs = needs;
+  if (auto done = makeBuffers(context); !done) return done;
+  if (auto done = updatePoints(context); !done) return done;
+  const PointLightContext lighting = lightContext(context);
+  if (auto done = m_light.prepare(lighting, needs, mayCompile); !done) return done;
+  if (auto done = m_light.prepareSpread(lighting, m_pointGrid.bindings()); !done) return done;
+  const bool lobes = m_light.hasLobes();
+  if (auto done = m_gather.prepare(context.device, gatherBindings(context), bounceBindings(context), needs, lobes, mayCompile); !done)
+    return done;
+  if (auto done = m_grid.prepare(context.device, placement(), m_width, m_height); !done) return done;
+  if (auto done = m_reconstruct.prepare(context.device, reconstruction(), m_width, m_height); !done) return done;
+  if (auto done = m_sites.prepare(context.device, siteBindings(context), needs, mayCompile); !done) return done;
+  return m_shade.prepare(context.device, shadeBindings(context), needs, mayCompile);
+}
+
+Result<void> PointProjectionTechnique::restart(const TechniqueContext& context, CostClass) {
+  m_tasks.clear();
+  m_pass = m_shaded = 0;
+  m_fillStride = PixelOrder::kStrides[0];
+  m_converged = m_preview = false;
+  if (m_lit || !gathers()) planPass(0);
+  else planPreview();
+  return gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
+    context.film.recordClear(r);
+    r.fillBuffer(m_indirect, 0, 0, 0);
+    if (!m_lit) m_light.recordClear(r);
+  });
+}
+
+Result<Progress> PointProjectionTechnique::advance(const TechniqueContext& context, double seconds) {
+  if (m_pass >= sampleLimit(context)) m_converged = true;
+  if (m_converged) return progress();
+  if (auto done = m_tasks.advance(context, seconds); !done) return done.error();
+  if (!m_tasks.empty()) return progress();
+  if (m_preview) {
+    m_preview = false;
+    planPass(0);
+    return progress();
+  }
+  ++m_pass;
+  planPass(m_pass);
+  Progress p = progress();
+  p.passFinished = true;
+  return p;
+}
+
+Progress PointProjectionTechnique::progress() const {
+  Progress p;
+  p.passes = p.samplesPerPixel = m_pass;
+  p.converged = m_converged;
+  p.fillStride = m_pass > 0 ? 0 : m_fillStride;
+  p.gatheredShare = m_pass > 0 ? 1.0 : double(m_shaded) / double(m_pixelOrder.pixels.size());
+  return p;
+}
+
+double PointProjectionTechnique::secondsToGrid(uint32_t stride) const {
+  const double first = gathers() ? m_gatherRate.secondsFor(uint64_t(m_width / m_settings.startGrid + 1) * (m_height / m_settings.startGrid + 1)) : 0.0;
+  for (size_t i = 0; i < PixelOrder::kStrides.size(); ++i)
+    if (PixelOrder::kStrides[i] == stride) return first + m_shadeRate.secondsFor(m_pixelOrder.levelEnd[i]);
+  return 0.0;
+}
+
+uint64_t PointProjectionTechnique::raysTraced() const {
+  const auto words = m_counters.as<uint32_t>();
+  const uint64_t shaded = uint64_t(words[shared::kCounterRays]) | uint64_t(words[shared::kCounterRays + 1]) << 32;
+  return shaded + m_light.raysTraced();
+}
+
+uint64_t PointProjectionTechnique::discardedSamples() const {
+  return m_counters.as<uint32_t>()[shared::kCounterDiscarded] + m_light.discardedSamples();
+}
+
+std::vector<std::string> PointProjectionTechnique::ran() const {
+  std::vector<std::string> names{"direct light"};
+  if (gathers()) names.insert(names.end(), {"surface points", "point relighting", "gathers", "joint bilateral upsampling"});
+  if (gathers() && m_needs.glossy) names.emplace_back("glossy gathers");
+  if (gathers() && m_light.hasLobes()) names.emplace_back("glossy lobes of points");
+  if (m_needs.sharp) names.emplace_back("rays through sharp lobes");
+  if (m_settings.bounces > 1) names.emplace_back("gathers at points");
+  return names;
+}
+
+std::vector<std::string> PointProjectionTechnique::leftOut() const {
+  std::vector<std::string> names;
+  if (!gathers()) names.insert(names.end(), {"surface points", "point relighting", "gathers", "joint bilateral upsampling"});
+  if (!m_needs.glossy) names.emplace_back("glossy gathers");
+  if (!m_light.hasLobes()) names.emplace_back("glossy lobes of points");
+  if (!m_needs.sharp) names.emplace_back("rays through sharp lobes");
+  if (!m_needs.alpha) names.emplace_back("alpha tests");
+  if (!m_needs.textures) names.emplace_back("textures");
+  return names;
+}
+
+std::unique_ptr<Technique> makePointProjection() { return std::make_unique<PointProjectionTechnique>(); }
+
+}  // namespace limn

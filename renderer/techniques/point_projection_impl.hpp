@@ -1,0 +1,114 @@
+#pragma once
+#include "renderer/cache/point_grid.hpp"
+#include "renderer/cache/point_light.hpp"
+#include "renderer/cache/surface_points.hpp"
+#include "renderer/gather/point_projection.hpp"
+#include "renderer/gpu/tailored_pass.hpp"
+#include "renderer/placement/adaptive_grid.hpp"
+#include "renderer/reconstruct/joint_bilateral.hpp"
+#include "renderer/techniques/pixel_order.hpp"
+#include "renderer/techniques/point_projection.hpp"
+#include "renderer/techniques/task_queue.hpp"
+
+namespace limn {
+
+/// Values of the announced parameters.
+struct PointProjectionSettings {
+  uint32_t points = 0, clusters = 0, projections = 0, microSize = 0, bounces = 0, relightSamples = 0, startGrid = 0,
+           filterSize = 0, maxSamples = 0;
+  float threshold = 0.0f, lambda = 0.0f;
+};
+
+/// The technique's parts and the order of their work. One file a concern: point_projection.cpp what a technique answers,
+/// point_projection_plan.cpp the passes, point_projection_work.cpp one piece of each kind of work.
+class PointProjectionTechnique final : public Technique {
+ public:
+  PointProjectionTechnique();
+  const TechniqueInfo& info() const override { return pointProjectionInfo(); }
+  Result<void> prepare(const TechniqueContext& context, const SceneNeeds& needs, bool mayCompile) override;
+  void setParameter(const std::string& name, double value) override;
+  Result<void> restart(const TechniqueContext& context, CostClass changed) override;
+  Result<Progress> advance(const TechniqueContext& context, double seconds) override;
+  double secondsToGrid(uint32_t stride) const override;
+  std::vector<std::string> ran() const override;
+  std::vector<std::string> leftOut() const override;
+  uint64_t raysTraced() const override;
+  uint64_t discardedSamples() const override;
+  const vk::Buffer* indirect() const override { return &m_indirect; }
+
+ private:
+  // point_projection.cpp
+  Result<void> makeBuffers(const TechniqueContext& context);
+  Result<void> updatePoints(const TechniqueContext& context);
+  PointLightContext lightContext(const TechniqueContext& context) const;
+  std::vector<vk::Binding> sceneBindings(const TechniqueContext& context, const vk::Buffer& list) const;
+  std::vector<vk::Binding> siteBindings(const TechniqueContext& context) const;
+  std::vector<vk::Binding> gatherBindings(const TechniqueContext& context) const;
+  std::vector<vk::Binding> bounceBindings(const TechniqueContext& context) const;
+  std::vector<vk::Binding> shadeBindings(const TechniqueContext& context) const;
+  PlacementBuffers placement() const { return {m_siteBuffer, m_indirect, m_list}; }
+  ReconstructBuffers reconstruction() const { return {m_siteBuffer, m_indirect, m_filtered}; }
+  uint32_t sampleLimit(const TechniqueContext& c) const { return c.sampleLimit ? c.sampleLimit : m_settings.maxSamples; }
+  bool gathers() const { return m_settings.bounces > 0 && m_points.count() > 0; }
+  Progress progress() const;
+
+  // point_projection_plan.cpp
+  void planPreview();
+  void planPass(uint32_t pass);
+  void planLighting();
+  void pushCoarsePicture();
+  void pushRelight(SlotRange slots, uint32_t samples, WorkRate& rate);
+  void pushBounce(bool first, bool compose);
+  void pushSites(uint32_t from, uint32_t end);
+  void pushGather(const char* name, Task::Begin select);
+  void pushLevel(uint32_t stride);
+  void pushLateShare(uint32_t turn);
+  void pushFill(uint32_t stride, uint32_t last = 1);
+  void pushFilter();
+  void pushShade(uint32_t end, bool firstOfFilm, bool firstOfGather);
+
+  // point_projection_work.cpp
+  Result<void> relight(const TechniqueContext& context, SlotRange slots, uint32_t samples);
+  Result<uint32_t> listBounceSites(const TechniqueContext& context, bool first);
+  Result<void> spread(const TechniqueContext& context, SlotRange slots, bool compose);
+  Result<void> sites(const TechniqueContext& context, uint32_t first, uint32_t count);
+  shared::PointProjectionPush gatherPush(const TechniqueContext& context, uint32_t first, uint32_t count) const;
+  Result<void> gather(const TechniqueContext& context, uint32_t first, uint32_t count);
+  Result<void> gatherAtPoints(const TechniqueContext& context, uint32_t first, uint32_t count);
+  Result<void> shade(const TechniqueContext& context, uint32_t first, uint32_t count, bool firstOfFilm, bool firstOfGather);
+
+  PointProjectionSettings m_settings;
+  SceneNeeds m_needs;
+
+  SurfacePoints m_points;
+  PointGrid m_pointGrid;
+  PointLightCache m_light;
+  PointProjection m_gather;
+  AdaptiveGrid m_grid;
+  JointBilateral m_reconstruct;
+  gpu::TailoredPass m_sites, m_shade;
+
+  PixelOrder m_pixelOrder;
+  vk::Buffer m_order, m_list, m_siteBuffer, m_indirect, m_filtered, m_lookedUp, m_bounceList, m_counters;
+  uint32_t m_width = 0, m_height = 0;  ///< [pixel] the buffers were made for
+  uint32_t m_bounceSlots = 0;          ///< of every cluster, gathered at for bounces
+  uint32_t m_bounceSites = 0;          ///< in m_bounceList
+  bool m_useFiltered = false;          ///< m_filtered holds what m_indirect does, filtered
+
+  TaskQueue m_tasks;
+  WorkRate m_previewRate{1e4}, m_relightRate{3e3}, m_bounceRate{1e4}, m_spreadRate{1e3}, m_siteRate{1e6}, m_gatherRate{8e3}, m_shadeRate{5e5},
+      m_filterRate{2e3};
+  uint64_t m_lightingRevision = 0;
+  bool m_pointsKnown = false;  ///< m_points are those of the settings
+  bool m_lit = false;          ///< the points carry all their light
+  uint32_t m_litSlots = 0;     ///< of every cluster, lit so far
+  uint32_t m_round = 0;        ///< of the present gathers
+  float m_meanLuminance = 0.0f;  ///< gathered on the start grid [W·sr⁻¹·m⁻²]
+  uint32_t m_pass = 0;
+  bool m_preview = false;      ///< a first picture from few points is under way
+  uint32_t m_shaded = 0;       ///< pixels of the first picture, in the order of m_pixelOrder
+  uint32_t m_fillStride = 8;
+  bool m_converged = false;
+};
+
+}  // namespace limn

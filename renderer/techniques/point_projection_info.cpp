@@ -1,0 +1,27 @@
+#include "renderer/techniques/point_projection.hpp"
+
+namespace limn {
+
+const TechniqueInfo& pointProjectionInfo() {
+  using enum ParameterType;
+  using enum CostClass;
+  static const TechniqueInfo kInfo{
+      "point-projection",
+      "Importance-driven point projection",
+      "Indirect light from lit surface points, gathered where the picture needs it; soon clean, a little biased.",
+      true,
+      {{"points", "Points on all surfaces", "points", integer, 16384, 1048576, 262144, rebuild},
+       {"clusters", "Clusters that share an importance; rounded to a power of two", "clusters", integer, 64, 1024, 512, rebuild},
+       {"projections", "Points projected at a gathered pixel", "points", integer, 512, 4096, 3072, regather},
+       {"microSize", "Side of the micro-buffer", "texels", integer, 8, 32, 32, relight},
+       {"bounces", "Indirect bounces; 0 is direct light only", "bounces", integer, 0, 32, 6, relight},
+       {"relightSamples", "Shadow rays a point", "rays", integer, 1, 64, 4, relight},
+       {"startGrid", "Distance of the first gathered pixels; rounded to a power of two", "pixels", integer, 2, 16, 16, regather},
+       {"threshold", "Incoherence over which a pixel of the first level is gathered; doubles a level", "1", real, 0.0, 10.0, 0.3, regather},
+       {"lambda", "Weight of radiance against geometry in the coherence metric", "1", real, 0.0, 100.0, 8.0, regather},
+       {"filterSize", "Side of the joint bilateral filter; 1 is none", "pixels", integer, 1, 7, 7, regather},
+       {"maxSamples", "Subpixel samples at which the picture is done", "samples", integer, 1, 65536, 1024, regather}}};
+  return kInfo;
+}
+
+}  // namespace limn

@@ -1,0 +1,167 @@
+#include <bit>
+
+#include "renderer/base/hash.hpp"
+#include "renderer/techniques/point_projection_impl.hpp"
+#include "renderer/vk/transfer.hpp"
+#include "shaders/shared/bindings.h"
+
+namespace limn {
+namespace {
+
+/// Slots of every cluster that the first picture after a change of light is made of.
+constexpr uint32_t kPreviewSlots = 32;
+/// Passes 1 to 3 refine to every 4th, 2nd and each pixel; from this one on what was interpolated is gathered, share by share,
+/// and then every pixel again.
+constexpr uint32_t kFirstLatePass = 4, kShares = 64;
+/// Coherence that tells different objects apart: thresholds stay below it, so that edges are gathered at every level.
+constexpr float kObjectEdge = 0.9f;
+/// Radiance differences count against this many times the mean: the metric is written for display values. [IPP §3.3]
+constexpr float kDisplayRange = 4.0f;
+
+}  // namespace
+
+// After a change of light: a picture from a first part of the points. It is shown, and then replaced: no bit of it stays, so
+// that pass 0 is the same whether there was a preview or not.
+void PointProjectionTechnique::planPreview() {
+  m_preview = true;
+  pushRelight({0, std::min(kPreviewSlots, m_light.layout().clusterSize)}, 1, m_previewRate);
+  pushCoarsePicture();
+  pushSites(m_pixelOrder.levelEnd[0], uint32_t(m_pixelOrder.pixels.size()));
+  pushFill(PixelOrder::kStrides[0] / 2);
+  pushShade(uint32_t(m_pixelOrder.pixels.size()), true, true);
+}
+
+void PointProjectionTechnique::planPass(uint32_t pass) {
+  const auto pixels = uint32_t(m_pixelOrder.pixels.size());
+  if (!gathers()) return pushShade(pixels, pass == 0, false);
+  if (pass == 0) {
+    if (!m_lit) planLighting();
+    pushCoarsePicture();
+    pushSites(m_pixelOrder.levelEnd[0], pixels);
+    for (uint32_t stride = m_settings.startGrid / 2; stride >= PixelOrder::kStrides[0]; stride /= 2) pushLevel(stride);
+    pushFill(PixelOrder::kStrides[0] / 2);
+    return pushShade(pixels, true, true);
+  }
+  if (pass < kFirstLatePass) {
+    const uint32_t stride = PixelOrder::kStrides[pass];
+    if (stride < m_settings.startGrid) pushLevel(stride);
+    pushFill(stride / 2);
+  } else {
+    pushLateShare(pass - kFirstLatePass);
+  }
+  if (pass + 1 >= kFirstLatePass) pushFilter();
+  // Light that was looked up before is dropped while much is gained by it, and then each time that the number of samples has
+  // doubled: at least half of them always know what the latest gathers know.
+  pushShade(pixels, false, pass <= kFirstLatePass || std::has_single_bit(pass));
+}
+
+// A picture of every 8th pixel, as soon as the start grid is gathered.
+void PointProjectionTechnique::pushCoarsePicture() {
+  pushSites(0, m_pixelOrder.levelEnd[0]);
+  pushGather("start grid", [this](const TechniqueContext& c) {
+    m_round = 0;
+    return m_grid.selectGrid(c.device, placement(), m_settings.startGrid);
+  });
+  m_tasks.push({"coherence scale", nullptr, [this](const TechniqueContext& c) -> Result<uint32_t> {
+                  auto mean = m_grid.meanLuminance(c.device, placement(), m_settings.startGrid);
+                  if (!mean) return mean.error();
+                  m_meanLuminance = float(*mean);
+                  return 0u;
+                }, {}});
+  pushFill(m_settings.startGrid / 2, PixelOrder::kStrides[0]);
+  pushShade(m_pixelOrder.levelEnd[0], true, true);
+}
+
+// All light of all points: direct, then one bounce after the other. The last bounce arrives at the pixels; the points need it
+// only where rays through sharp lobes end at them.
+void PointProjectionTechnique::planLighting() {
+  pushRelight({0, m_light.layout().clusterSize}, m_settings.relightSamples, m_relightRate);
+  const uint32_t atPoints = m_settings.bounces - (m_needs.sharp ? 0 : 1);
+  for (uint32_t bounce = 0; bounce < atPoints; ++bounce) pushBounce(bounce == 0, bounce + 1 < m_settings.bounces);
+  m_tasks.push({"points lit", nullptr, [this](const TechniqueContext&) -> Result<uint32_t> {
+                  m_lit = true;
+                  return 0u;
+                }, {}});
+}
+
+void PointProjectionTechnique::pushRelight(SlotRange slots, uint32_t samples, WorkRate& rate) {
+  m_tasks.push({"relight", &rate, [slots](const TechniqueContext&) -> Result<uint32_t> { return slots.end - slots.first; },
+                [this, samples](const TechniqueContext& c, uint32_t first, uint32_t count) {
+                  return relight(c, {first, first + count}, samples);
+                }});
+}
+
+void PointProjectionTechnique::pushBounce(bool first, bool compose) {
+  m_tasks.push({"bounce", &m_bounceRate, [this, first](const TechniqueContext& c) { return listBounceSites(c, first); },
+                [this](const TechniqueContext& c, uint32_t from, uint32_t count) { return gatherAtPoints(c, from, count); }, 32});
+  m_tasks.push({"spread", &m_spreadRate,
+                [this](const TechniqueContext&) -> Result<uint32_t> { return m_light.layout().clusterSize - m_bounceSlots; },
+                [this, compose](const TechniqueContext& c, uint32_t from, uint32_t count) {
+                  return spread(c, {m_bounceSlots + from, m_bounceSlots + from + count}, compose);
+                }});
+}
+
+void PointProjectionTechnique::pushSites(uint32_t from, uint32_t end) {
+  m_tasks.push({"sites", &m_siteRate, [from, end](const TechniqueContext&) -> Result<uint32_t> { return end - from; },
+                [this, from](const TechniqueContext& c, uint32_t first, uint32_t count) { return sites(c, from + first, count); }, 256});
+}
+
+void PointProjectionTechnique::pushGather(const char* name, Task::Begin select) {
+  m_tasks.push({name, &m_gatherRate, std::move(select),
+                [this](const TechniqueContext& c, uint32_t first, uint32_t count) { return gather(c, first, count); }, 32});
+}
+
+void PointProjectionTechnique::pushLevel(uint32_t stride) {
+  pushGather("level", [this, stride](const TechniqueContext& c) {
+    m_round = 0;
+    float threshold = m_settings.threshold;
+    for (uint32_t s = PixelOrder::kStrides[0]; s > stride; s /= 2) threshold *= 2.0f;
+    const CoherenceRule rule{std::min(threshold, std::max(m_settings.threshold, kObjectEdge)), m_settings.lambda,
+                             float(c.scene.radius()), kDisplayRange * m_meanLuminance};
+    return m_grid.selectIncoherent(c.device, placement(), stride, rule);
+  });
+  pushFill(stride, stride);
+}
+
+void PointProjectionTechnique::pushLateShare(uint32_t turn) {
+  pushGather("remaining", [this, turn](const TechniqueContext& c) {
+    m_round = turn / kShares;
+    const uint32_t share = (m_grid.scatteredCount() + kShares - 1) / kShares;
+    return m_grid.selectScattered(c.device, placement(), turn % kShares * share, share, m_round == 0);
+  });
+}
+
+// Interpolates the grids of `stride`, half of it, and so on until that of `last`.
+void PointProjectionTechnique::pushFill(uint32_t stride, uint32_t last) {
+  m_tasks.push({"interpolate", nullptr, [this, stride, last](const TechniqueContext& c) -> Result<uint32_t> {
+                  auto done = gpu::runNow(c.device, [&](vk::CommandRecorder& r) {
+                    for (uint32_t s = stride; s >= std::max(last, 1u); s /= 2) m_reconstruct.recordInterpolate(r, reconstruction(), s);
+                  });
+                  m_useFiltered = false;
+                  if (!done) return done.error();
+                  return 0u;
+                }, {}});
+}
+
+void PointProjectionTechnique::pushFilter() {
+  if (m_settings.filterSize < 3) return;
+  m_tasks.push({"filter", &m_filterRate,
+                [this](const TechniqueContext&) -> Result<uint32_t> {
+                  m_useFiltered = true;
+                  return m_height;
+                },
+                [this](const TechniqueContext& c, uint32_t first, uint32_t count) {
+                  return gpu::runNow(c.device, [&](vk::CommandRecorder& r) {
+                    m_reconstruct.recordFilter(r, reconstruction(), m_settings.filterSize, {first, count});
+                  });
+                }, 4});
+}
+
+void PointProjectionTechnique::pushShade(uint32_t end, bool firstOfFilm, bool firstOfGather) {
+  m_tasks.push({"shade", &m_shadeRate, [end](const TechniqueContext&) -> Result<uint32_t> { return end; },
+                [this, firstOfFilm, firstOfGather](const TechniqueContext& c, uint32_t first, uint32_t count) {
+                  return shade(c, first, count, firstOfFilm, firstOfGather);
+                }, 256});
+}
+
+}  // namespace limn

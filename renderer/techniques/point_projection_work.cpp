@@ -1,0 +1,97 @@
+#include "renderer/techniques/point_projection_impl.hpp"
+#include "renderer/vk/transfer.hpp"
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/gather_shared.h"
+
+namespace limn {
+namespace {
+
+constexpr uint32_t kWorkgroup = 64;  // of gather_sites.comp and point_projection_shade.comp
+
+/// Points projected at a site of a bounce: what they miss is averaged over many sites.
+constexpr uint32_t kBounceProjections = 1536;
+
+uint32_t workgroups(uint32_t entries) { return (entries + kWorkgroup - 1) / kWorkgroup; }
+
+}  // namespace
+
+// One slot of every cluster an item.
+Result<void> PointProjectionTechnique::relight(const TechniqueContext& context, SlotRange slots, uint32_t samples) {
+  const PointLightContext lighting = lightContext(context);
+  auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
+    m_light.recordRelight(r, lighting, {slots, samples, 0, context.seed});
+    m_light.recordCompose(r, lighting, slots);
+  });
+  m_litSlots = slots.end;
+  return done;
+}
+
+Result<void> PointProjectionTechnique::sites(const TechniqueContext& context, uint32_t first, uint32_t count) {
+  const shared::GatherSitesPush push{first, count, context.seed};
+  const auto all = siteBindings(context);
+  return gpu::runNow(context.device, [&](vk::CommandRecorder& r) { m_sites->record(r, all, push, workgroups(count)); });
+}
+
+shared::PointProjectionPush PointProjectionTechnique::gatherPush(const TechniqueContext& context, uint32_t first, uint32_t count) const {
+  return {first, count, context.seed, m_round, m_settings.projections, m_points.clusterCount(), m_points.clusterSize(), m_litSlots,
+          float(m_points.areaPerPoint()), m_settings.microSize};
+}
+
+Result<void> PointProjectionTechnique::gather(const TechniqueContext& context, uint32_t first, uint32_t count) {
+  const auto push = gatherPush(context, first, count);
+  const auto all = gatherBindings(context);
+  return gpu::runNow(context.device, [&](vk::CommandRecorder& r) { m_gather.recordAtPixels(r, all, push); });
+}
+
+Result<void> PointProjectionTechnique::gatherAtPoints(const TechniqueContext& context, uint32_t first, uint32_t count) {
+  auto push = gatherPush(context, first, count);
+  push.projections = std::min(kBounceProjections, m_settings.projections);
+  push.round = 0;
+  const auto all = bounceBindings(context);
+  return gpu::runNow(context.device, [&](vk::CommandRecorder& r) { m_gather.recordAtPoints(r, all, push); });
+}
+
+// Both sides of the first points of every cluster; after the first bounce only those that any light reached.
+Result<uint32_t> PointProjectionTechnique::listBounceSites(const TechniqueContext& context, bool first) {
+  const PointLayout layout = m_light.layout();
+  auto lights = first ? Result<std::vector<shared::PointLight>>(std::vector<shared::PointLight>{})
+                      : vk::readBackArray<shared::PointLight>(context.device, m_light.light(), layout.count());
+  if (!lights) return lights.error();
+  std::vector<uint32_t> list;
+  for (uint32_t cluster = 0; cluster < layout.clusterCount; ++cluster)
+    for (uint32_t slot = 0; slot < m_bounceSlots; ++slot) {
+      const uint32_t point = cluster * layout.clusterSize + slot;
+      if (first || (*lights)[point].indirectFront != glm::vec3(0.0f)) list.push_back(2 * point);
+      if (first || (*lights)[point].indirectBack != glm::vec3(0.0f)) list.push_back(2 * point + 1);
+    }
+  m_bounceSites = uint32_t(list.size());
+  if (list.empty()) return 0u;
+  if (auto done = vk::uploadArray(context.device, m_bounceList, std::span<const uint32_t>(list)); !done) return done.error();
+  return m_bounceSites;
+}
+
+// Light that arrived at the sites of a bounce is spread over all points, which then send it on.
+Result<void> PointProjectionTechnique::spread(const TechniqueContext& context, SlotRange slots, bool compose) {
+  const PointLightContext lighting = lightContext(context);
+  const auto grid = m_pointGrid.bindings();
+  return gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
+    m_light.recordSpread(r, lighting, grid, slots);
+    // With the first slots come those that they were spread from.
+    if (compose) m_light.recordCompose(r, lighting, {slots.first == m_bounceSlots ? 0 : slots.first, slots.end});
+  });
+}
+
+Result<void> PointProjectionTechnique::shade(const TechniqueContext& context, uint32_t first, uint32_t count, bool firstOfFilm,
+                                             bool firstOfGather) {
+  const shared::ShadePush push{first,       count,         context.firstSample + m_pass, context.seed,
+                               firstOfFilm, firstOfGather, !gathers(),                   0};
+  const auto all = shadeBindings(context);
+  auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) { m_shade->record(r, all, push, workgroups(count)); });
+  if (m_pass > 0) return done;
+  m_shaded = std::max(m_shaded, first + count);
+  for (size_t i = 0; i < PixelOrder::kStrides.size(); ++i)
+    if (m_shaded >= m_pixelOrder.levelEnd[i]) m_fillStride = std::min(m_fillStride, PixelOrder::kStrides[i]);
+  return done;
+}
+
+}  // namespace limn
