@@ -7,10 +7,11 @@
 namespace limn {
 namespace {
 
-constexpr size_t kSharpConstant = 10, kGatherConstants = 16;  // constant_id of kUseSharp and of the first of a gather's own
+// constant_id of kUseSharp and of the first of a gather's own
+constexpr size_t kSharpConstant = 10, kGatherConstants = 16;
 
-/// Mirrors are none of a gather's business: that need says here whether points have lobes, so that the general variant, which
-/// has all needs, has them too.
+/// Mirrors are none of a gather's business: that need says here whether points have lobes, so that the general variant,
+/// which has all needs, has them too.
 SceneNeeds needsOfGather(SceneNeeds needs, bool lobes) {
   needs.mirror = lobes;
   return needs;

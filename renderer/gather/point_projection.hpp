@@ -10,14 +10,14 @@ namespace limn {
 /// Most that a gather's shared memory has room for.
 constexpr uint32_t kMostProjections = 4096, kMostGatherClusters = 1024, kMostMicroSize = 32;
 
-/// Gathers light at sites by splatting surface points into a micro-buffer, the points drawn by how much of the site's view
-/// their clusters fill. The same scene, seed and round give the same bits. [IPP §3.2, §4] Render thread.
+/// Gathers light at sites by splatting surface points into a micro-buffer, the points drawn by how much of the site's
+/// view their clusters fill. The same scene, seed and round give the same bits. [IPP §3.2, §4] Render thread.
 class PointProjection {
  public:
   PointProjection();
 
-  /// Pipelines for what the scene needs, compiled and warm; made the first time and where `mayCompile` says that a stop is
-  /// no matter. Both sets hold the scene's, the camera's and the points' bindings with their radiance and lobes, and
+  /// Pipelines for what the scene needs, compiled and warm; made the first time and where `mayCompile` says that a stop
+  /// is no matter. Both sets hold the scene's, the camera's and the points' bindings with their radiance and lobes, and
   /// PIXEL_LIST. `atPixels` adds G_BUFFER and INDIRECT, `atPoints` POINT_LIGHT; more does no harm. `lobes` says whether
   /// any point may have glossy lobes; without, POINT_LOBES is not read. Errors: "device", "out-of-memory", "device-lost".
   Result<void> prepare(vk::Device& device, const std::vector<vk::Binding>& atPixels,

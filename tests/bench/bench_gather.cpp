@@ -1,5 +1,5 @@
-// Microseconds a site of gathers by point projection, beside a plain loop of as many fetches and atomics: the same points,
-// repetitions in turn, the best of each.
+// Microseconds a site of gathers by point projection, beside a plain loop of as many fetches and atomics: the same
+// points, repetitions in turn, the best of each.
 //   bench_gather [--device NAME|INDEX] [--repetitions N] [--projections N] [--points N] [--micro N] [--workgroup N]
 #include <cstdio>
 #include <cstdlib>
@@ -115,7 +115,8 @@ int bench(const Options& options) {
   variant.workgroup = options.workgroup;
   std::vector<std::pair<const char*, gpu::Pass>> passes;
   const auto add = [&](const char* name, const char* shader, const SceneNeeds& needs) {
-    passes.emplace_back(name, orExit(gpu::Pass::create(*device, shader, all, sizeof(push), gatherConstants(needs, false, variant))));
+    const auto constants = gatherConstants(needs, false, variant);
+    passes.emplace_back(name, orExit(gpu::Pass::create(*device, shader, all, sizeof(push), constants)));
   };
   add("plain fetch + atomic", "gather_baseline", diffuse);
   add("diffuse", "gather_pixels", diffuse);
@@ -131,7 +132,8 @@ int bench(const Options& options) {
               device->info().name.c_str(), options.projections, points.size(), kClusters, options.micro, options.micro,
               options.workgroup);
   for (size_t i = 0; i < passes.size(); ++i)
-    std::printf("%-24s %8.1f us a site  %6.2f of the plain loop\n", passes[i].first, best[i] / kSites * 1e6, best[i] / best[0]);
+    std::printf("%-24s %8.1f us a site  %6.2f of the plain loop\n", passes[i].first, best[i] / kSites * 1e6,
+                best[i] / best[0]);
   return 0;
 }
 

@@ -50,7 +50,8 @@ inline std::vector<LitPoint> boxPoints(float half, uint32_t n, const std::vector
 inline std::vector<LitPoint> spherePoints(glm::vec3 center, float radius, uint32_t count, glm::vec3 radiance) {
   std::vector<LitPoint> all;
   for (uint32_t i = 0; i < count; ++i) {
-    const float y = 1.0f - 2.0f * (float(i) + 0.5f) / float(count), r = std::sqrt(1.0f - y * y), phi = 2.39996323f * float(i);
+    const float y = 1.0f - 2.0f * (float(i) + 0.5f) / float(count), r = std::sqrt(1.0f - y * y);
+    const float phi = 2.39996323f * float(i);
     const glm::vec3 d(r * std::cos(phi), y, r * std::sin(phi));
     all.push_back({center + radius * d, -d, radiance, radiance});
   }
