@@ -89,6 +89,17 @@ Result<void> checkLimits(const Device& device, const BufferDesc& desc) {
   return {};
 }
 
+/// The bytes that a buffer is made with. Mesa's software device (22.3) compiles a shader anew, at the dispatch, when a texel
+/// buffer is the first that is, or is not, a power of two long, or whose length has, or has not, an empty second byte. A
+/// little room at the end makes all of them neither.
+size_t roomFor(const Device& device, const BufferDesc& desc) {
+  if (!has(desc.usage, BufferUsage::texel)) return desc.size;
+  BufferDesc padded = desc;
+  const auto peculiar = [](size_t size) { return (size & (size - 1)) == 0 || (size & 0xff00) == 0; };
+  for (padded.size = (desc.size + 255) & ~size_t(255); peculiar(padded.size);) padded.size += 256;
+  return checkLimits(device, padded).ok() ? padded.size : desc.size;
+}
+
 }  // namespace
 
 Result<Buffer> Buffer::create(Device& device, const BufferDesc& desc) {
@@ -101,7 +112,7 @@ Result<Buffer> Buffer::create(Device& device, const BufferDesc& desc) {
   buffer.m_name = desc.name;
   buffer.m_owner = desc.owner;
   auto info = typed<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
-  info.size = desc.size;
+  info.size = roomFor(device, desc);
   info.usage = usageFlags(device, desc.usage);
   if (const VkResult r = vkCreateBuffer(device.handle(), &info, nullptr, &buffer.m_handle); r != VK_SUCCESS) {
     return deviceError(r, "vkCreateBuffer for " + desc.name);

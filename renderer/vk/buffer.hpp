@@ -57,7 +57,7 @@ class Buffer {
   BufferUsage usage() const { return m_usage; }
   const std::string& name() const { return m_name; }
   VkBuffer handle() const { return m_handle; }
-  /// The view over the whole buffer; null without BufferUsage::texel.
+  /// The view over the whole buffer, and up to 767 bytes after it that hold nothing; null without BufferUsage::texel.
   VkBufferView view() const { return m_view; }
   /// Device address of byte 0 for acceleration structures; 0 with other usage or without ray queries.
   VkDeviceAddress address() const { return m_address; }
