@@ -40,8 +40,8 @@ void printScene(const SceneResult& scene) {
 
 void printSummary(const BenchResults& results) {
   for (const TechniqueCalibration& c : results.calibrations)
-    std::printf("%s: %.0f %% of %zu intervals hold the error, median of estimate / error %.3f\n", c.technique.c_str(),
-                100.0 * c.trimmed.heldShare, c.trimmed.count, c.trimmed.medianRatio);
+    std::printf("%s: %.0f %% of %zu intervals hold the error, median of estimate / error %.3f (%zu left out)\n",
+                c.technique.c_str(), 100.0 * c.trimmed.heldShare, c.trimmed.count, c.trimmed.medianRatio, c.leftOut);
   for (const Growth& g : results.growth)
     if (g.time && g.memory)
       std::printf("%s: time per step grows with %s to the %.2f, memory to the %.2f\n", g.technique.c_str(),

@@ -28,7 +28,8 @@ const std::string kConvergence =
     "is the standard deviation relative to the mean, at the last budget.</p>\n";
 const std::string kEstimates =
     "<h2>What the film says of its own error</h2>\n<p>Of 95 % intervals 90 to 98 % should hold the true error, and the "
-    "median of estimate over error should lie within 0.8 and 1.25.</p>\n";
+    "median of estimate over error should lie within 0.8 and 1.25. Left out are errors that are not five times over "
+    "the reference's own noise: it cannot judge them.</p>\n";
 
 std::string escaped(const std::string& text) {
   std::string safe;
@@ -106,12 +107,12 @@ std::string slopesTable(const BenchResults& results) {
 }
 
 std::string calibrationTable(const BenchResults& results) {
-  std::string text = header({"technique", "checkpoints", "intervals that hold the error", "median of estimate / error",
-                             "the same against every quotient", ""});
+  std::string text = header({"technique", "checkpoints", "left out", "intervals that hold the error",
+                             "median of estimate / error", "both against every quotient", ""});
   for (const TechniqueCalibration& c : results.calibrations) {
     const bool shareOff = c.trimmed.heldShare < 0.9 || c.trimmed.heldShare > 0.98;
     const bool ratioOff = c.trimmed.medianRatio < 0.8 || c.trimmed.medianRatio > 1.25;
-    text += row({escaped(c.technique), std::to_string(c.trimmed.count),
+    text += row({escaped(c.technique), std::to_string(c.trimmed.count), std::to_string(c.leftOut),
                  marked(number(100.0 * c.trimmed.heldShare) + " %", shareOff),
                  marked(number(c.trimmed.medianRatio), ratioOff), number(100.0 * c.all.heldShare) + " %",
                  number(c.all.medianRatio)});

@@ -34,8 +34,9 @@ Result<CurvePoint> makePoint(const std::vector<const Run*>& runs, size_t i, cons
   point.gatheredShare = mean([](const Checkpoint& c) { return c.gatheredShare; });
   point.relMse = mean([](const Checkpoint& c) { return c.relMse; });
   point.relMseAll = mean([](const Checkpoint& c) { return c.relMseAll; });
-  const auto relMse = [](const Checkpoint& c) { return c.relMse; };
-  if (point.relMse > 0.0) point.spread = deviationOf(collect(runs, i, relMse)) / point.relMse;
+  // Within the same time seeds may have made a different number of samples: that is no spread of the error.
+  const std::vector<double> scaled = collect(runs, i, [](const Checkpoint& c) { return c.relMse * c.samples; });
+  if (meanOf(scaled) > 0.0) point.spread = deviationOf(scaled) / meanOf(scaled);
   point.toldSpread = mean([](const Checkpoint& c) {
     return c.estimate > 0.0 && std::isfinite(c.high) ? (c.high - c.estimate) / kIntervalSigmas / c.estimate : 0.0;
   });
@@ -97,17 +98,22 @@ Result<std::vector<Curve>> makeCurves(const std::vector<Run>& runs, const std::v
 std::vector<TechniqueCalibration> calibrateAll(const std::vector<SceneResult>& scenes) {
   std::vector<std::string> order;
   std::map<std::string, std::vector<EstimateCheck>> trimmed, all;
+  std::map<std::string, size_t> leftOut;
   for (const SceneResult& scene : scenes)
     for (const Run& run : scene.runs) {
-      if (!trimmed.contains(run.technique)) order.push_back(run.technique);
+      if (std::find(order.begin(), order.end(), run.technique) == order.end()) order.push_back(run.technique);
       for (const Checkpoint& c : run.checkpoints) {
+        if (scene.referenceNoise * kJudgeMargin > c.relMse) {
+          ++leftOut[run.technique];
+          continue;
+        }
         trimmed[run.technique].push_back({c.estimate, c.low, c.high, c.relMse});
         all[run.technique].push_back({c.estimate, c.low, c.high, c.relMseAll});
       }
     }
   std::vector<TechniqueCalibration> result;
   for (const std::string& technique : order)
-    result.push_back({technique, calibrate(trimmed[technique]), calibrate(all[technique])});
+    result.push_back({technique, calibrate(trimmed[technique]), calibrate(all[technique]), leftOut[technique]});
   return result;
 }
 

@@ -13,7 +13,7 @@ struct CurvePoint {
   std::string budget;                  ///< as it was asked for
   double seconds = 0.0, steps = 0.0, samples = 0.0, gatheredShare = 0.0;
   double relMse = 0.0, relMseAll = 0.0;
-  double spread = 0.0;                 ///< standard deviation of relMse between seeds, relative to its mean
+  double spread = 0.0;                 ///< of relMse between seeds at equal samples: standard deviation over mean
   double toldSpread = 0.0;             ///< what the films' intervals say of it: half width / 1.96 / estimate
   std::optional<ErrorParts> parts;     ///< noise and bias, of two seeds or more
 };
@@ -54,7 +54,10 @@ struct Growth {
 struct TechniqueCalibration {
   std::string technique;
   Calibration trimmed, all;
+  size_t leftOut = 0;                  ///< checkpoints that the reference is too noisy to judge
 };
+/// So many times over the reference's noise must an error be for the estimate to be judged by it.
+constexpr double kJudgeMargin = 5.0;
 
 struct BenchResults {
   BenchOptions options;

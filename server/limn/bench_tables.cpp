@@ -220,6 +220,7 @@ std::string resultsJson(const BenchResults& results) {
   writeList(json, "calibration", results.calibrations, [](JsonWriter& out, const TechniqueCalibration& c) {
     out.beginObject();
     out.field("technique", c.technique);
+    out.field("leftOut", c.leftOut);
     writeCalibration(out, "relMse", c.trimmed);
     writeCalibration(out, "relMseAll", c.all);
     out.endObject();

@@ -1,10 +1,15 @@
 // The benchmark's arithmetic on made-up numbers whose answer is known.
 #include "server/limn/bench_statistics.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+
+#include "server/limn/bench_growth.hpp"
+#include "server/limn/bench_page.hpp"
+#include "server/limn/bench_plots.hpp"
 
 namespace limn::bench {
 namespace {
@@ -128,6 +133,91 @@ TEST(BenchStatistics, CalibrationCountsWhatCanBeJudged) {
   EXPECT_DOUBLE_EQ(result.heldShare, 2.0 / 3.0);
   EXPECT_DOUBLE_EQ(result.medianRatio, 1.5);
   EXPECT_EQ(calibrate({}).count, 0u);
+}
+
+TEST(BenchResults, OnlyErrorsWellOverTheReferencesNoiseJudgeTheEstimate) {
+  SceneResult scene;
+  scene.referenceNoise = 0.01;
+  bench::Run run;
+  run.technique = "made-up";
+  for (const double truth : {0.2, 0.051, 0.049}) {
+    Checkpoint checkpoint;
+    checkpoint.relMse = checkpoint.relMseAll = truth;
+    checkpoint.estimate = 2.0 * truth;
+    checkpoint.low = 0.9 * truth;
+    checkpoint.high = 3.0 * truth;
+    run.checkpoints.push_back(checkpoint);
+  }
+  scene.runs.push_back(run);
+  const std::vector<TechniqueCalibration> calibrations = calibrateAll({scene});
+  ASSERT_EQ(calibrations.size(), 1u);
+  EXPECT_EQ(calibrations[0].trimmed.count, 2u);
+  EXPECT_EQ(calibrations[0].leftOut, 1u);
+  EXPECT_DOUBLE_EQ(calibrations[0].trimmed.heldShare, 1.0);
+  EXPECT_DOUBLE_EQ(calibrations[0].trimmed.medianRatio, 2.0);
+}
+
+TEST(BenchResults, ACurveLeavesCoarsePicturesOutOfItsSlope) {
+  Curve curve;
+  for (const double samples : {0.5, 2.0, 8.0, 32.0, 128.0}) {
+    CurvePoint point;
+    point.seconds = point.samples = samples;
+    point.gatheredShare = std::min(1.0, samples);
+    // Under four samples the curve is anything; from there on it is 1/n.
+    point.relMse = point.relMseAll = samples < 4.0 ? 5.0 : 1.0 / samples;
+    curve.points.push_back(point);
+  }
+  finishCurve(curve);
+  ASSERT_TRUE(curve.slope);
+  EXPECT_NEAR(curve.slope->exponent, -1.0, 1e-12);
+  ASSERT_EQ(curve.times.size(), std::size(kErrorLevels));
+  EXPECT_NEAR(curve.times[1].seconds, 1.0 / 0.03, 1e-9);
+  EXPECT_EQ(curve.times[4].when, When::never);
+}
+
+TEST(BenchPictures, MissingPixelsTakeTheCornerOfTheirSmallestCellWithSamples) {
+  RadianceImage picture{8, 4, std::vector<float>(8 * 4 * 3, 0.0f)};
+  std::vector<float> samples(8 * 4, 0.0f);
+  const auto put = [&](uint32_t x, uint32_t y, float value) {
+    samples[y * 8 + x] = 1.0f;
+    for (size_t c = 0; c < 3; ++c) picture.values[(y * 8 + x) * 3 + c] = value;
+  };
+  put(0, 0, 8.0f);
+  put(4, 0, 4.0f);
+  put(6, 2, 2.0f);
+  fillMissing(picture, samples);
+  const auto at = [&](uint32_t x, uint32_t y) { return picture.values[(y * 8 + x) * 3]; };
+  EXPECT_EQ(at(3, 3), 8.0f);
+  EXPECT_EQ(at(5, 3), 4.0f);
+  EXPECT_EQ(at(7, 3), 2.0f);
+  EXPECT_EQ(at(4, 0), 4.0f);
+}
+
+TEST(BenchPictures, Base64AsInRfc4648) {
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("f"), "Zg==");
+  EXPECT_EQ(base64("fo"), "Zm8=");
+  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(base64("\xff\xfe\xfd"), "//79");
+}
+
+TEST(BenchPlots, TitlesCannotLeaveTheirQuotes) {
+  const Plot plot{"name", "it's", "x", "y", {{"a'b", {{1.0, 2.0}}}}};
+  const std::string script = gnuplotScript(plot, "out");
+  EXPECT_THAT(script, ::testing::HasSubstr("'it''s'"));
+  EXPECT_THAT(script, ::testing::HasSubstr("'a''b'"));
+  EXPECT_THAT(script, ::testing::HasSubstr("1 2\nEOD"));
+}
+
+TEST(BenchGrowth, MadeScenesHaveTheSizesThatWereAsked) {
+  for (const uint32_t triangles : {2u, 10'000u, 99'458u}) {
+    const LoadedScene made = growthScene(triangles, 7);
+    EXPECT_NEAR(double(made.report.triangles), triangles, 0.02 * triangles + 1.0);
+    EXPECT_EQ(made.scene.lights.size(), 7u);
+    double power = 0.0;
+    for (const Light& light : made.scene.lights) power += light.intensity;
+    EXPECT_NEAR(power, 60.0, 1e-4);
+  }
 }
 
 }  // namespace
