@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -93,6 +94,9 @@ struct ChangeSet {
 /// in Error::place ("material", "roughness", ...). SetResolve and SetView are checked too; SetTechnique and
 /// SetImageSize are the session's.
 Result<void> validate(const Scene& scene, const Edit& edit);
+
+/// The same of one edit of a batch, against the scene as the edits before it, which must be valid, would leave it.
+Result<void> validate(const Scene& scene, std::span<const Edit> batch, size_t index);
 
 /// Applies the scene part of a batch. All edits were validated. Values that equal the present ones change nothing and
 /// are not in the ChangeSet. Sequential: the later edit of one field wins.

@@ -55,6 +55,7 @@ class Checker {
 
 struct Validator {
   const Scene& scene;
+  std::span<const Edit> earlier;  ///< of the same batch
   Checker check;
 
   void operator()(const SetMaterial& e) {
@@ -81,16 +82,20 @@ struct Validator {
 
   void operator()(const SetLight& e) {
     if (!check.index(e.light, scene.lights.size(), "light")) return;
-    const Light& light = scene.lights[e.light];
     check.range(e.color, 0.0f, 1.0f, "color");
     check.range(e.intensity, 0.0f, kUnbounded, "intensity");
     check.range(e.range, 0.0f, kUnbounded, "range");
     check.range(e.outerConeAngle, 0.0f, kHalfPi, "outerConeAngle");
     check.range(e.innerConeAngle, 0.0f, kHalfPi, "innerConeAngle");
     if (!e.innerConeAngle && !e.outerConeAngle) return;
-    const bool ordered =
-        e.innerConeAngle.value_or(light.innerConeAngle) < e.outerConeAngle.value_or(light.outerConeAngle);
-    check.require(ordered, e.innerConeAngle ? "innerConeAngle" : "outerConeAngle",
+    float inner = scene.lights[e.light].innerConeAngle, outer = scene.lights[e.light].outerConeAngle;
+    for (const Edit& edit : earlier) {
+      const auto* before = std::get_if<SetLight>(&edit);
+      if (!before || before->light != e.light) continue;
+      inner = before->innerConeAngle.value_or(inner);
+      outer = before->outerConeAngle.value_or(outer);
+    }
+    check.require(e.innerConeAngle.value_or(inner) < e.outerConeAngle.value_or(outer), e.innerConeAngle ? "innerConeAngle" : "outerConeAngle",
                   "innerConeAngle must be smaller than outerConeAngle");
   }
 
@@ -143,9 +148,11 @@ struct Validator {
 
 }  // namespace
 
-Result<void> validate(const Scene& scene, const Edit& edit) {
-  Validator validator{scene, {}};
-  std::visit(validator, edit);
+Result<void> validate(const Scene& scene, const Edit& edit) { return validate(scene, std::span(&edit, 1), 0); }
+
+Result<void> validate(const Scene& scene, std::span<const Edit> batch, size_t index) {
+  Validator validator{scene, batch.first(index), {}};
+  std::visit(validator, batch[index]);
   return validator.check.take();
 }
 

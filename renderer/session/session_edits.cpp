@@ -61,7 +61,9 @@ Result<void> Session::Impl::drainMailbox() {
   return redoPending();
 }
 
-Result<void> Session::Impl::checkEdit(const Edit& edit) const {
+// An edit is checked against what the edits before it in its batch would leave.
+Result<void> Session::Impl::checkEdit(std::span<const Edit> batch, size_t index) const {
+  const Edit& edit = batch[index];
   if (const auto* size = std::get_if<SetImageSize>(&edit)) {
     const auto fits = [](uint32_t side) { return side >= kMinSide && side <= kMaxSide; };
     if (!fits(size->width) || !fits(size->height))
@@ -69,13 +71,16 @@ Result<void> Session::Impl::checkEdit(const Edit& edit) const {
     return {};
   }
   if (const auto* set = std::get_if<SetTechnique>(&edit)) {
-    const TechniqueInfo* info = set->technique ? findTechnique(*set->technique) : &technique->info();
+    const TechniqueInfo* info = &technique->info();
+    for (const Edit& earlier : batch.first(index))
+      if (const auto* chosen = std::get_if<SetTechnique>(&earlier); chosen && chosen->technique) info = findTechnique(*chosen->technique);
+    if (set->technique) info = findTechnique(*set->technique);
     if (!info) return Error{"unknown-technique", "no technique is named \"" + *set->technique + "\"", "technique"};
     for (const auto& [name, value] : set->parameters)
       if (auto checked = checkParameter(*info, name, value); !checked) return checked;
     return {};
   }
-  return validate(scene, edit);
+  return validate(scene, batch, index);
 }
 
 Result<CostClass> Session::Impl::applyTechnique(const SetTechnique& edit) {
@@ -95,7 +100,7 @@ Result<CostClass> Session::Impl::applyTechnique(const SetTechnique& edit) {
 
 Result<void> Session::Impl::handle(EditRequest& request) {
   for (size_t i = 0; i < request.edits.size(); ++i)
-    if (auto checked = checkEdit(request.edits[i]); !checked) {
+    if (auto checked = checkEdit(request.edits, i); !checked) {
       Error answer = checked.error();
       answer.place = "/edits/" + std::to_string(i) + (answer.place.empty() ? "" : "/" + answer.place);
       replies.push(ErrorReply{request.from, answer});

@@ -43,7 +43,7 @@ struct Session::Impl {
   Result<void> drainMailbox();
   Result<void> handle(EditRequest& request);
   Result<void> handle(LoadRequest& request);
-  Result<void> checkEdit(const Edit& edit) const;
+  Result<void> checkEdit(std::span<const Edit> batch, size_t index) const;
   Result<CostClass> applyTechnique(const SetTechnique& edit);
   Result<void> redoPending();
 

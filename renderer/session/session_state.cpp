@@ -43,7 +43,8 @@ Result<void> Session::Impl::init(Scene newScene, LoadReport newReport, const Ses
   if (auto done = chooseTechnique(config.technique.empty() ? first : config.technique); !done) return done;
   SetTechnique given;
   given.parameters = config.parameters;
-  if (auto checked = checkEdit(Edit(given)); !checked) return checked;
+  const Edit edit(given);
+  if (auto checked = checkEdit(std::span(&edit, 1), 0); !checked) return checked;
   if (auto applied = applyTechnique(given); !applied) return applied.error();
   if (auto done = resize(config.width, config.height); !done) return done;
   const double begin = nowSeconds();

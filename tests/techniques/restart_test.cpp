@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "renderer/techniques/technique_info.hpp"
 #include "tests/support/rich_scene.hpp"
 #include "tests/support/session_fixture.hpp"
 
@@ -192,6 +193,41 @@ TEST_F(Restart, OneBadEditOfABatchChangesNothingAndIsNamed) {
   EXPECT_EQ(after.restarts, before.restarts);
   EXPECT_EQ(after.editsApplied, before.editsApplied);
   EXPECT_EQ(after.steps, before.steps);
+}
+
+TEST_F(Restart, AnEditOfABatchIsJudgedByWhatTheOnesBeforeItLeave) {
+  const TechniqueInfo* other = nullptr;
+  for (const TechniqueInfo& info : techniqueInfos())
+    if (info.name != session().status().technique) other = &info;
+  ASSERT_NE(other, nullptr);
+  const auto choose = [](const std::string& name) { return Edit(SetTechnique{name, {}}); };
+  const auto set = [](const std::string& name, double value) { return Edit(SetTechnique{std::nullopt, {{name, value}}}); };
+  const auto cone = [](auto member, float angle) {
+    return with<SetLight>([=](auto& e) { e.light = rich().spot; e.*member = angle; })();
+  };
+  const ParameterInfo& parameter = other->parameters.front();
+  const std::string own = session().status().technique;
+  const CostClass cost = session().apply({choose(other->name), set(parameter.name, parameter.maximum), choose(own),
+                                          set("maxBounces", 3), cone(&SetLight::outerConeAngle, 0.9f),
+                                          cone(&SetLight::innerConeAngle, 0.8f)}).cost;
+  EXPECT_EQ(cost, CostClass::rebuild);
+  EXPECT_EQ(session().status().technique, own);
+  EXPECT_FLOAT_EQ(session().scene().lights[rich().spot].innerConeAngle, 0.8f);
+
+  // Each is good alone: the cones cross, and the other technique has no such parameter.
+  const uint64_t scene = session().scene().hash();
+  const std::pair<std::vector<Edit>, const char*> mistakes[] = {
+      {{cone(&SetLight::innerConeAngle, 0.7f), cone(&SetLight::outerConeAngle, 0.6f)}, "/edits/1/outerConeAngle"},
+      {{set("maxBounces", 5), choose(other->name), set("rouletteStart", 2)}, "/edits/2/parameters/rouletteStart"}};
+  for (const auto& [edits, place] : mistakes) {
+    (void)session().edit(edits);
+    session().run(0);
+    const auto errors = session().take<ErrorReply>();
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_EQ(errors[0].error.place, place);
+    EXPECT_EQ(session().scene().hash(), scene);
+    EXPECT_EQ(session().status().technique, own);
+  }
 }
 
 TEST_F(Restart, NoEditMakesAPipeline) {

@@ -270,6 +270,25 @@ TEST(EditValidate, LightRanges) {
   EXPECT_EQ(complaint(SetLight{.outerConeAngle = 0.0f}), "outerConeAngle");
 }
 
+TEST(EditValidate, AnEditOfABatchIsJudgedByWhatTheOnesBeforeItLeave) {
+  const Scene scene = smallScene();  // cones from 0 to pi/4
+  const auto complaintOf = [&](const std::vector<Edit>& batch, size_t index) {
+    const Result<void> result = validate(scene, batch, index);
+    return result ? std::string() : result.error().place;
+  };
+  const Edit widen = SetLight{.light = 1, .outerConeAngle = 0.9f}, narrow = SetLight{.light = 1, .outerConeAngle = 0.3f},
+             inner = SetLight{.light = 1, .innerConeAngle = 0.8f}, some = SetLight{.light = 1, .innerConeAngle = 0.5f},
+             otherLight = SetLight{.light = 0, .outerConeAngle = 0.9f};
+  EXPECT_EQ(complaintOf({widen, inner}, 1), "");
+  EXPECT_EQ(complaintOf({inner, widen}, 0), "innerConeAngle") << "the order counts";
+  EXPECT_EQ(complaintOf({some}, 0), "");
+  EXPECT_EQ(complaintOf({narrow, some}, 1), "innerConeAngle") << "each alone is good, together they cross";
+  EXPECT_EQ(complaintOf({some, narrow}, 1), "outerConeAngle");
+  EXPECT_EQ(complaintOf({some, narrow}, 0), "");
+  EXPECT_EQ(complaintOf({otherLight, inner}, 1), "innerConeAngle") << "another light's cone is another light's";
+  EXPECT_EQ(complaintOf({narrow, widen, inner}, 2), "") << "the last one before it counts";
+}
+
 TEST(EditValidate, NodeRanges) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(complaint(SetNodeTransform{.translation = glm::dvec3(0, nan, 0)}), "translation");
