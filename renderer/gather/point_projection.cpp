@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "renderer/base/check.hpp"
+#include "renderer/gpu/work_groups.hpp"
 
 namespace limn {
 namespace {
@@ -26,7 +27,7 @@ void recordWith(const gpu::TailoredPass& pass, vk::CommandRecorder& recorder, co
   LIMN_CHECK(push.microSize > 0 && push.microSize <= kMostMicroSize);
   if (push.entryCount == 0) return;
   push.projections = std::clamp(push.projections, 2 * push.clusterCount, kMostProjections);
-  const SiteGroups groups = groupsOfSites(push.entryCount);
+  const gpu::WorkGroups groups = gpu::groupsInRows(push.entryCount);  // one a site
   pass->record(recorder, bindings, push, groups.x, groups.y);
 }
 
@@ -40,11 +41,6 @@ std::vector<uint32_t> gatherConstants(const SceneNeeds& needs, bool lobes, const
   words[kSharpConstant] = needs.sharp;
   words.insert(words.end(), {lobes, variant.workgroup, variant.selection, variant.splatSide, variant.seeEnvironment});
   return words;
-}
-
-SiteGroups groupsOfSites(uint32_t sites) {
-  constexpr uint32_t kRow = 4096;
-  return {std::min(sites, kRow), (sites + kRow - 1) / kRow};
 }
 
 PointProjection::PointProjection()

@@ -50,10 +50,4 @@ struct GatherVariant {
 /// Specialization constants of the three shaders.
 std::vector<uint32_t> gatherConstants(const SceneNeeds& needs, bool lobes, const GatherVariant& variant = {});
 
-/// Workgroups of a dispatch that takes one a site, in x and y: each within every device's limit of 65,535.
-struct SiteGroups {
-  uint32_t x, y;
-};
-SiteGroups groupsOfSites(uint32_t sites);
-
 }  // namespace limn

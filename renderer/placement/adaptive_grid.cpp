@@ -3,12 +3,19 @@
 #include <algorithm>
 #include <bit>
 
+#include "renderer/gpu/work_groups.hpp"
 #include "shaders/shared/bindings.h"
 
 namespace limn {
 namespace {
 
 uint32_t groupsOf(uint32_t candidates) { return (candidates + shared::kPlacementGroup - 1) / shared::kPlacementGroup; }
+
+void recordStage(const gpu::Pass& pass, vk::CommandRecorder& recorder, const std::vector<vk::Binding>& bindings,
+                 const shared::SelectSitesPush& push) {
+  const gpu::WorkGroups groups = gpu::groupsInRows(push.stage == 1 ? 1 : groupsOf(push.candidates));
+  pass.record(recorder, bindings, push, groups.x, groups.y);
+}
 
 }  // namespace
 
@@ -51,16 +58,15 @@ uint32_t AdaptiveGrid::scatteredCount() const {
 Result<uint32_t> AdaptiveGrid::select(vk::Device& device, const PlacementBuffers& buffers, shared::SelectSitesPush push) const {
   push.width = m_width;
   push.height = m_height;
-  const uint32_t groups = groupsOf(push.candidates);
   const auto all = bindings(buffers);
   auto done = gpu::runNow(device, [&](vk::CommandRecorder& r) {
     for (push.stage = 0; push.stage < 3; ++push.stage) {
-      m_pass.record(r, all, push, push.stage == 1 ? 1 : groups);
+      recordStage(m_pass, r, all, push);
       r.barrier();
     }
   });
   if (!done) return done.error();
-  return m_selection.as<uint32_t>()[groups];
+  return m_selection.as<uint32_t>()[groupsOf(push.candidates)];
 }
 
 Result<uint32_t> AdaptiveGrid::selectGrid(vk::Device& device, const PlacementBuffers& buffers, uint32_t stride) const {
@@ -102,13 +108,12 @@ Result<double> AdaptiveGrid::meanLuminance(vk::Device& device, const PlacementBu
   push.stage = 3;
   push.stride = stride;
   push.candidates = gridCount(stride);
-  const uint32_t groups = groupsOf(push.candidates);
   const auto all = bindings(buffers);
-  auto done = gpu::runNow(device, [&](vk::CommandRecorder& r) { m_pass.record(r, all, push, groups); });
+  auto done = gpu::runNow(device, [&](vk::CommandRecorder& r) { recordStage(m_pass, r, all, push); });
   if (!done) return done.error();
   const auto words = m_selection.as<uint32_t>();
   double sum = 0.0, number = 0.0;
-  for (uint32_t i = 0; i < groups; ++i) {
+  for (uint32_t i = 0; i < groupsOf(push.candidates); ++i) {
     sum += std::bit_cast<float>(words[2 * i]);
     number += words[2 * i + 1];
   }

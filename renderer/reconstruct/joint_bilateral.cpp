@@ -5,7 +5,7 @@
 namespace limn {
 namespace {
 
-constexpr uint32_t kGroup = 64, kGroupWidth = 16, kGroupHeight = 4;  // of the shaders
+constexpr uint32_t kGroupWidth = 16, kGroupHeight = 4;  // of the shaders
 
 uint32_t groups(uint32_t items, uint32_t size) { return (items + size - 1) / size; }
 
@@ -38,7 +38,7 @@ Result<void> JointBilateral::prepare(vk::Device& device, const ReconstructBuffer
 void JointBilateral::recordInterpolate(vk::CommandRecorder& recorder, const ReconstructBuffers& buffers, uint32_t stride) const {
   const uint32_t columns = groups(m_width, stride), rows = gridRows(stride);
   const shared::ReconstructPush push{m_width, m_height, stride, 0, 0, rows};
-  m_interpolate.record(recorder, interpolateBindings(buffers), push, groups(columns * rows, kGroup));
+  m_interpolate.record(recorder, interpolateBindings(buffers), push, groups(columns, kGroupWidth), groups(rows, kGroupHeight));
   recorder.barrier();
 }
 

@@ -88,7 +88,7 @@ bool chosen(uint i) {
 }
 
 // Sum and number of what the candidates on the grid carry, one pair of words a workgroup.
-void sumLuminance(uint i) {
+void sumLuminance(uint group, uint i) {
   ivec2 p = candidatePixel(i);
   bool counts = i < push.candidates && inside(p) && seesSurface(seenSites[pixelAt(inside(p) ? p : ivec2(0))]);
   scanFloats[gl_LocalInvocationIndex] = counts ? luminance(gathered[pixelAt(p)].diffuse + gathered[pixelAt(p)].glossy) : 0.0;
@@ -96,8 +96,8 @@ void sumLuminance(uint i) {
   if (gl_LocalInvocationIndex != kPlacementGroup - 1u) return;
   float sum = 0.0;
   for (uint k = 0u; k < kPlacementGroup; ++k) sum += scanFloats[k];
-  selection[2u * gl_WorkGroupID.x] = floatBitsToUint(sum);
-  selection[2u * gl_WorkGroupID.x + 1u] = number;
+  selection[2u * group] = floatBitsToUint(sum);
+  selection[2u * group + 1u] = number;
 }
 
 // Where the run of each workgroup begins in the list; the total behind the last.
@@ -120,16 +120,18 @@ void main() {
     placeRuns(groups);
     return;
   }
-  uint i = gl_GlobalInvocationID.x;
+  uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  if (group >= groups) return;  // the end of the last row
+  uint i = group * kPlacementGroup + gl_LocalInvocationIndex;
   if (push.stage == 3u) {
-    sumLuminance(i);
+    sumLuminance(group, i);
     return;
   }
   uint own = chosen(i) ? 1u : 0u;
   uint inclusive = scanInclusive(own);
   if (push.stage == 0u) {
-    if (gl_LocalInvocationIndex == kPlacementGroup - 1u) selection[gl_WorkGroupID.x] = inclusive;
+    if (gl_LocalInvocationIndex == kPlacementGroup - 1u) selection[group] = inclusive;
   } else if (own == 1u) {
-    pixelList[selection[gl_WorkGroupID.x] + inclusive - 1u] = uint(pixelAt(candidatePixel(i)));
+    pixelList[selection[group] + inclusive - 1u] = uint(pixelAt(candidatePixel(i)));
   }
 }

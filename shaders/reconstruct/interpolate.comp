@@ -7,13 +7,12 @@
 #include "shaders/lib/joint_bilateral.glsl"
 #include "shaders/shared/placement_shared.h"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 16, local_size_y = 4) in;
 layout(push_constant, scalar) uniform Push { ReconstructPush push; };
 
 void main() {
-  uint columns = (push.width + push.stride - 1u) / push.stride, i = gl_GlobalInvocationID.x;
-  if (i >= columns * push.rows) return;
-  ivec2 p = ivec2(i % columns, push.firstRow + i / columns) * int(push.stride), size = ivec2(push.width, push.height);
+  ivec2 p = (ivec2(gl_GlobalInvocationID.xy) + ivec2(0, push.firstRow)) * int(push.stride), size = ivec2(push.width, push.height);
+  if (p.x >= size.x || p.y >= min(size.y, int((push.firstRow + push.rows) * push.stride))) return;
   int pixel = p.y * size.x + p.x, coarse = int(push.stride) * 2;
   GatherSite s = seenSites[pixel];
   bool parent = p.x % coarse == 0 && p.y % coarse == 0;  // filled before, others read it now

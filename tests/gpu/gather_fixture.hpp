@@ -5,6 +5,7 @@
 
 #include "renderer/gather/point_projection.hpp"
 #include "renderer/gpu/device_scene.hpp"
+#include "renderer/gpu/work_groups.hpp"
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/scene_shared.h"
 #include "tests/gpu/gather_points.hpp"
@@ -96,7 +97,7 @@ class Gatherer {
                                                  vk::storage(BINDING_G_BUFFER, siteBuffer), output});
     const gpu::Pass& pass = passOf(shader, all, variant);
     push.entryCount = uint32_t(entries.size());
-    const SiteGroups groups = groupsOfSites(push.entryCount);
+    const gpu::WorkGroups groups = gpu::groupsInRows(push.entryCount);
     must(gpu::runNow(device(), [&](vk::CommandRecorder& r) {
       for (uint32_t i = 0; i < rounds; ++i) {
         shared::PointProjectionPush p = push;
