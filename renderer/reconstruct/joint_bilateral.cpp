@@ -31,6 +31,7 @@ Result<void> JointBilateral::prepare(vk::Device& device, const ReconstructBuffer
   m_filter = filter.take();
   return gpu::runNow(device, [&](vk::CommandRecorder& r) {
     m_interpolate.warmUp(r, interpolating);
+    r.barrier();  // both name the same buffer
     m_filter.warmUp(r, filtering);
   });
 }
