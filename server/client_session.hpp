@@ -39,6 +39,8 @@ class ClientSession {
   size_t queuedMessages() const { return m_queue.size(); }
 
   /// Whether a picture could be sent at once.
+  /// Whether the renderer has to go on for this client: it watches, or waits for an error that pictures tell.
+  bool needsPictures() const { return watching || !errorWaits.empty(); }
   bool wantsFrame() const { return greeted && watching && !closing && !ready && flow.hasCredit(); }
   bool isNew(const Frame& frame) const { return frame.info.frameId > newestFrameId; }
   EncodingKey encodingFor(const Frame& frame) const { return flow.encodingFor(frame.info.phase, takesJpeg, takesPng); }

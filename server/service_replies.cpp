@@ -71,6 +71,7 @@ struct ReplyHandler {
   void operator()(const WaitReply& reply) const {
     if (!session) return;
     std::erase_if(session->errorWaits, [&](const ErrorWait& wait) { return wait.seq == reply.to.seq; });
+    service.tellWatched();
     service.send(*session, protocol::Waited{reply.to.seq, reply.steps, {reply.filmHash},
                                             finite(service.m_replies.status().estimatedError)});
   }

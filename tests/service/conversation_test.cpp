@@ -172,6 +172,31 @@ TEST(Conversation, waitForAnErrorIsAnsweredOnceThePictureIsSoGood) {
   EXPECT_GE(client.awaitReply<protocol::Waited>(seq).steps, 3u);
 }
 
+TEST(Conversation, waitForAnErrorIsAnsweredAlsoWhenNobodyWatches) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet(false);
+  const uint32_t edit = client.nextSeq();
+  client.send(setRoughness(edit, 0, 0.75f));
+  client.awaitReply<protocol::Ack>(edit);
+  const uint32_t seq = client.nextSeq();
+  client.send(protocol::Wait{seq, std::nullopt, 0.34f});
+  EXPECT_GE(client.awaitReply<protocol::Waited>(seq).steps, 3u);
+  EXPECT_EQ(client.picturesSeen, 0u) << "waiting is not watching";
+
+  // Afterwards the renderer rests again: what is edited now is shown to nobody.
+  const uint32_t last = client.nextSeq();
+  client.send(setRoughness(last, 0, 0.5f));
+  client.awaitReply<protocol::Ack>(last);
+  const uint64_t published = server.renderer->framesPublished();
+  for (int i = 0; i < 5; ++i) {
+    const uint32_t more = client.nextSeq();
+    client.send(setRoughness(more, 0, 0.1f * float(i)));
+    client.awaitReply<protocol::Ack>(more);
+  }
+  EXPECT_EQ(server.renderer->framesPublished(), published);
+}
+
 TEST(Conversation, waitForAnErrorIsNotHeldUpByAnEditThatFailed) {
   TestService server;
   TestClient client(server.port());

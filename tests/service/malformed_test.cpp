@@ -105,15 +105,18 @@ TEST(Malformed, anotherVersionIsToldAndClosed) {
   EXPECT_EQ(client.closeCode, 1008);
 }
 
-TEST(Malformed, wrongTokenInHelloIsToldAndClosed) {
+TEST(Malformed, aTokenBelongsIntoTheHandshakeAndNotIntoHello) {
   TestService::Options options;
   options.configure = [](ServiceConfig& config) { config.transport.access.token = "secret-7"; };
   TestService server(options);
+  EXPECT_EQ(RawClient().upgrade(server.port(), {}), 401);
+  EXPECT_EQ(RawClient().upgrade(server.port(), {{"Authorization", "Bearer secret-8"}}), 401);
   RawClient socket;
   ASSERT_EQ(socket.upgrade(server.port(), {{"Authorization", "Bearer secret-7"}}), 101);
-  socket.sendText(R"({"op":"hello","seq":1,"version":1,"client":"x","token":"secret-8"})");
-  EXPECT_NE(socket.receive()->payload.find("unauthorized"), std::string::npos);
-  EXPECT_EQ(socket.waitForClose(), 1008);
+  socket.sendText(R"({"op":"hello","seq":1,"version":1,"client":"x","token":"secret-7"})");
+  EXPECT_NE(socket.receive()->payload.find("bad-message"), std::string::npos);
+  socket.sendText(R"({"op":"hello","seq":2,"version":1,"client":"x"})");
+  EXPECT_NE(socket.receive()->payload.find(R"("op":"hello")"), std::string::npos);
 }
 
 TEST(Malformed, binaryMessagesCloseWith1003) {

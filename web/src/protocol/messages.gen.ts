@@ -14,9 +14,9 @@ export const kMaxJsonDepth = 16;  /** nesting of a text message */
 export const kHelloSeconds = 5;  /** from the handshake to the client's hello [s] */
 export const kAckSeconds = 10;  /** without an acknowledgement while frames are in flight [s] */
 
-export type ErrorCode = "bad-message" | "out-of-range" | "unknown-op" | "unknown-name" | "unknown-technique" | "unknown-parameter" | "bad-seq" | "bad-ack" | "hello-first" | "version" | "unauthorized" | "busy" | "limit" | "bad-file" | "unsupported" | "io" | "path" | "device" | "device-lost" | "internal";
+export type ErrorCode = "bad-message" | "out-of-range" | "unknown-op" | "unknown-name" | "unknown-technique" | "unknown-parameter" | "bad-seq" | "bad-ack" | "hello-first" | "version" | "busy" | "limit" | "bad-file" | "unsupported" | "io" | "path" | "device" | "device-lost" | "internal";
 
-export const kCloseCodes: { [code: number]: string } = { 1000: "after bye", 1001: "the server is draining", 1002: "the WebSocket protocol was broken", 1003: "a binary message came from a client", 1007: "a text message was not UTF-8", 1008: "policy: no hello in time, no token, acknowledgements missing for too long", 1009: "a message was longer than maxControlBytes", 1011: "a fault of the server's own, or a lost device" };
+export const kCloseCodes: { [code: number]: string } = { 1000: "after bye", 1001: "the server is draining", 1002: "the WebSocket protocol was broken", 1003: "a binary message came from a client", 1007: "a text message was not UTF-8", 1008: "policy: no hello in time, acknowledgements missing for too long", 1009: "a message was longer than maxControlBytes", 1011: "a fault of the server's own, or a lost device" };
 
 /** What an edit costs, cheapest first. */
 export type CostClass = "none" | "display-only" | "relight" | "re-gather" | "rebuild" | "reload";
@@ -290,7 +290,6 @@ export interface ClientHello {
   seq: number;  /** rises from message to message of a client */
   version: number;  /** of the protocol; 1 */
   client: string;  /** name and version of the program, for logs */
-  token?: string;  /** where the server wants one and the handshake did not carry it */
   encodings?: Encoding[];  /** those the client can decode; absent: jpeg and png */
   watch?: boolean;  /** false: no image frames are wanted; absent: true */
 }
@@ -803,7 +802,6 @@ const kStructs: { [name: string]: readonly Field[] } = {
     { name: "seq", type: "u32", min: 1 },
     { name: "version", type: "u32" },
     { name: "client", type: "string", maxLength: 128 },
-    { name: "token", type: "string", optional: true, maxLength: 512 },
     { name: "encodings", type: "Encoding[]", optional: true, maxItems: 16 },
     { name: "watch", type: "bool", optional: true },
   ],

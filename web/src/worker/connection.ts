@@ -146,7 +146,7 @@ export class Connection {
       if (this.socket || this.paused) return; // somebody hurried meanwhile
       if (said) this.refuse(said.reason, said.hopeless);
       else this.retryLater('the server cannot be reached');
-    } else if (refusal && (refusal.code === 'unauthorized' || refusal.code === 'version')) {
+    } else if (refusal && refusal.code === 'version') {
       this.refuse(refusal.message, true);
     } else {
       this.retryLater(reason);
