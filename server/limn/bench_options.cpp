@@ -172,7 +172,7 @@ CommandSpec benchSpec() {
            {"seeds", "N", "runs of each, from seed 0 on; two or more tell noise from bias (default: 3)"},
            {"set", "[technique.]name=value", "a parameter, of all that have it or of one", true},
            {"references", "DIR", "where references are kept and looked for (default: OUTPUT/references)"},
-           {"reference-seconds", "S", "most time for one scene's reference (default: 100)"},
+           {"reference-seconds", "S", "most time for one scene's reference (default: 200)"},
            {"pictures", "LIST.csv", "another renderer's pictures, lines of scene,name,seconds,file.exr: more curves"},
            {"growth", "", "also time per step and memory against triangles, lights and pixels, of made scenes"}}};
 }

@@ -32,7 +32,7 @@ struct BenchOptions {
   std::string pictures;                ///< list of another renderer's pictures; empty: none
   uint32_t width = 256, height = 256;  ///< [pixel]
   uint32_t seeds = 3;
-  double referenceSeconds = 100.0;     ///< most time for one scene's reference [s]
+  double referenceSeconds = 200.0;     ///< most time for one scene's reference [s]
   std::vector<Setting> settings;
   bool growth = false;
 };

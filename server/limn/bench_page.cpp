@@ -161,7 +161,7 @@ std::string referenceText(const SceneResult& scene) {
   std::string text = "<p>Reference: " + std::to_string(scene.referenceSamples) + " samples of a pixel in " +
                      number(scene.referenceSeconds) + " s, " + noise + ". ";
   if (!scene.referenceFineEnough)
-    text += marked("Its time was over before its noise was " + number(kReferenceMargin) + " times under it.", true);
+    text += marked("Its time was over before it was " + number(kReferenceMargin) + " times finer.", true);
   if (!scene.unsupported.empty()) text += " Not supported: " + joined(scene.unsupported) + ".";
   return text + "</p>\n";
 }

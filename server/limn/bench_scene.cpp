@@ -95,6 +95,16 @@ class SceneBench {
     return smallest;
   }
 
+  /// Of the reference's own technique. Where light comes by rare paths a noise that is estimated from few samples
+  /// deceives, but it does fall with their number.
+  double mostSamplesOfJudge() const {
+    double most = 0.0;
+    for (const Run& run : m_result.runs)
+      if (run.technique == referenceConfig(m_options).technique)
+        for (const Checkpoint& checkpoint : run.checkpoints) most = std::max(most, checkpoint.samples);
+    return most;
+  }
+
   /// Samples until the reference's noise is small beside every error, or its time is over. What an earlier benchmark
   /// kept is not made again.
   Result<ReferencePictures> makeReference() {
@@ -108,7 +118,8 @@ class SceneBench {
         const Result<double> smallest = smallestError(reference);
         if (!smallest) return smallest.error();
         m_result.smallestError = *smallest;
-        m_result.referenceFineEnough = reference.noise() * kReferenceMargin <= *smallest;
+        m_result.referenceFineEnough = reference.noise() * kReferenceMargin <= *smallest &&
+                                       double(reference.samples()) >= kReferenceMargin * mostSamplesOfJudge();
         if (m_result.referenceFineEnough || spent >= m_options.referenceSeconds * 0.99) break;
       }
       const double before = reference.seconds();
