@@ -18,7 +18,8 @@ std::vector<vk::Binding> filterBindings(const ReconstructBuffers& b) {
 
 }  // namespace
 
-Result<void> JointBilateral::prepare(vk::Device& device, const ReconstructBuffers& buffers, uint32_t width, uint32_t height) {
+Result<void> JointBilateral::prepare(vk::Device& device, const ReconstructBuffers& buffers, uint32_t width,
+                                     uint32_t height) {
   m_width = width;
   m_height = height;
   if (m_interpolate && m_filter) return {};
@@ -36,16 +37,20 @@ Result<void> JointBilateral::prepare(vk::Device& device, const ReconstructBuffer
   });
 }
 
-void JointBilateral::recordInterpolate(vk::CommandRecorder& recorder, const ReconstructBuffers& buffers, uint32_t stride) const {
+void JointBilateral::recordInterpolate(vk::CommandRecorder& recorder, const ReconstructBuffers& buffers,
+                                       uint32_t stride) const {
   const uint32_t columns = groups(m_width, stride), rows = gridRows(stride);
   const shared::ReconstructPush push{m_width, m_height, stride, 0, 0, rows};
-  m_interpolate.record(recorder, interpolateBindings(buffers), push, groups(columns, kGroupWidth), groups(rows, kGroupHeight));
+  m_interpolate.record(recorder, interpolateBindings(buffers), push, groups(columns, kGroupWidth),
+                       groups(rows, kGroupHeight));
   recorder.barrier();
 }
 
-void JointBilateral::recordFilter(vk::CommandRecorder& recorder, const ReconstructBuffers& buffers, uint32_t size, RowRange rows) const {
+void JointBilateral::recordFilter(vk::CommandRecorder& recorder, const ReconstructBuffers& buffers, uint32_t size,
+                                  RowRange rows) const {
   const shared::ReconstructPush push{m_width, m_height, 1, (size - 1) / 2, rows.first, rows.count};
-  m_filter.record(recorder, filterBindings(buffers), push, groups(m_width, kGroupWidth), groups(rows.count, kGroupHeight));
+  m_filter.record(recorder, filterBindings(buffers), push, groups(m_width, kGroupWidth),
+                  groups(rows.count, kGroupHeight));
 }
 
 }  // namespace limn

@@ -24,10 +24,14 @@ LIMN_CONST_FLOAT(kIndirectNone, 0.0f);
 LIMN_CONST_FLOAT(kIndirectInterpolated, 1.0f);
 LIMN_CONST_FLOAT(kIndirectSampled, 2.0f);
 
+// IndirectTexel.count of interpolated light that should be gathered.
+LIMN_CONST_FLOAT(kCountFar, -1.0f);      // it comes from this surface, but not from close by
+LIMN_CONST_FLOAT(kCountGuessed, -2.0f);  // it comes from other surfaces, as nothing else is there; others do not use it
+
 // Indirect light at a pixel, kept free of the surface's colours so that textures stay sharp. [IPP §4, Microbuffers]
 struct IndirectTexel {
   vec3 diffuse;   // irradiance / pi [W·sr⁻¹·m⁻²]; times the diffuse albedo it is radiance
-  float count;    // gathers averaged; 0 when interpolated
+  float count;    // gathers averaged; 0 when interpolated, or kCount...
   vec3 glossy;    // reflected by rough glossy lobes, over the reflectance at normal incidence
   float state;    // kIndirect...
 };
