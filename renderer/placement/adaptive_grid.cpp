@@ -19,18 +19,19 @@ void recordStage(const gpu::Pass& pass, vk::CommandRecorder& recorder, const std
 
 }  // namespace
 
-Result<void> AdaptiveGrid::prepare(vk::Device& device, const PlacementBuffers& buffers, uint32_t width, uint32_t height) {
-  if (m_width != width || m_height != height) {
-    m_width = width;
-    m_height = height;
+Result<void> AdaptiveGrid::prepare(vk::Device& device, const PlacementBuffers& buffers, uint32_t width,
+                                   uint32_t height) {
+  if (!m_selection || m_width != width || m_height != height) {
     vk::BufferDesc desc;
     desc.owner = "placement";
     desc.name = "placement.selection";
-    desc.size = (2 * size_t(groupsOf(scatteredCount())) + 2) * sizeof(uint32_t);
+    desc.size = (2 * size_t(groupsOf(scatteredCount(width, height))) + 2) * sizeof(uint32_t);
     desc.memory = vk::MemoryKind::readback;
     auto made = vk::Buffer::create(device, desc);
     if (!made) return made.error();
     m_selection = made.take();
+    m_width = width;
+    m_height = height;
   }
   if (m_pass) return {};
   const auto like = bindings(buffers);
@@ -50,12 +51,13 @@ uint32_t AdaptiveGrid::gridCount(uint32_t stride) const {
 }
 
 // A square of a power of two about the picture.
-uint32_t AdaptiveGrid::scatteredCount() const {
-  const uint32_t bits = std::max<uint32_t>(1, uint32_t(std::bit_width(std::max(m_width, m_height) - 1)));
+uint32_t AdaptiveGrid::scatteredCount(uint32_t width, uint32_t height) {
+  const uint32_t bits = std::max<uint32_t>(1, uint32_t(std::bit_width(std::max(width, height) - 1)));
   return 1u << (2 * bits);
 }
 
-Result<uint32_t> AdaptiveGrid::select(vk::Device& device, const PlacementBuffers& buffers, shared::SelectSitesPush push) const {
+Result<uint32_t> AdaptiveGrid::select(vk::Device& device, const PlacementBuffers& buffers,
+                                      shared::SelectSitesPush push) const {
   push.width = m_width;
   push.height = m_height;
   const auto all = bindings(buffers);
@@ -90,8 +92,8 @@ Result<uint32_t> AdaptiveGrid::selectIncoherent(vk::Device& device, const Placem
   return select(device, buffers, push);
 }
 
-Result<uint32_t> AdaptiveGrid::selectScattered(vk::Device& device, const PlacementBuffers& buffers, uint32_t first, uint32_t count,
-                                               bool unsampledOnly) const {
+Result<uint32_t> AdaptiveGrid::selectScattered(vk::Device& device, const PlacementBuffers& buffers, uint32_t first,
+                                               uint32_t count, bool unsampledOnly) const {
   shared::SelectSitesPush push{};
   push.rule = unsampledOnly ? shared::kSelectUnsampled : shared::kSelectScattered;
   push.stride = 1;

@@ -9,7 +9,7 @@
 
 layout(local_size_x = 256) in;
 layout(binding = BINDING_PIXEL_LIST, scalar) writeonly buffer PixelList { uint pixelList[]; };
-layout(binding = BINDING_SELECTION, scalar) buffer Selection { uint selection[]; };  // count of each workgroup, then the total
+layout(binding = BINDING_SELECTION, scalar) buffer Selection { uint selection[]; };  // a workgroup each, then all
 layout(push_constant, scalar) uniform Push { SelectSitesPush push; };
 
 shared float scanFloats[256];
@@ -27,8 +27,8 @@ uint evenBits(uint x) {
   return (x | x >> 8) & 0x0000ffffu;
 }
 
-// Morton order with its bits reversed: any run of it is spread over the whole picture. The square it covers may be larger than
-// the picture.
+// Morton order with its bits reversed: any run of it is spread over the whole picture. The square it covers may be
+// larger than the picture.
 ivec2 scatteredPixel(uint i) {
   uint bits = 2u * uint(findMSB(max(max(push.width, push.height) * 2u - 1u, 2u)));
   uint reversed = bitfieldReverse(i) >> (32u - bits);
@@ -41,9 +41,9 @@ ivec2 candidatePixel(uint i) {
   return ivec2(i % columns, i / columns) * int(push.stride);
 }
 
-float outgoing(int pixel) { return luminance(gathered[pixel].diffuse + gathered[pixel].glossy) * push.inverseLuminance; }
+float outgoing(IndirectTexel light) { return luminance(light.diffuse + light.glossy); }
 
-// Geometry against the four neighbours on the grid: 1 says that anything may be between them.
+// Geometry against the four neighbours on the grid: 1 at least where anything may be between them.
 float geometricChange(ivec2 p, GatherSite own) {
   vec3 normal = octDecode(own.normal);
   float worst = 0.0;
@@ -51,27 +51,32 @@ float geometricChange(ivec2 p, GatherSite own) {
     ivec2 q = p + (k < 2 ? ivec2(2 * k - 1, 0) : ivec2(0, 2 * k - 5)) * int(push.stride);
     if (!inside(q)) continue;
     GatherSite other = seenSites[pixelAt(q)];
-    float change = distance(own.posR, other.posR) * push.inverseExtent + sqrt(max(2.0 - 2.0 * dot(normal, octDecode(other.normal)), 0.0));
-    worst = max(worst, seesSurface(other) && other.object == own.object ? change : 1.0);
+    float turn = sqrt(max(2.0 - 2.0 * dot(normal, octDecode(other.normal)), 0.0));
+    float change = seesSurface(other) ? distance(own.posR, other.posR) * push.inverseExtent + turn : 1.0;
+    worst = max(worst, other.object == own.object ? change : max(change, 1.0));
   }
   return worst;
 }
 
-// Radiance between each two of the four parents, corners of the cell of the next coarser grid.
+// Radiance between each two of the four parents, corners of the cell of the next coarser grid; kInfinity where that of
+// one is no number.
 float radianceChange(ivec2 p) {
   ivec2 cell = p / int(2u * push.stride);
   float light[4];
-  bool known[4];
+  bool known[4], broken = false;
   for (int k = 0; k < 4; ++k) {
     ivec2 q = (cell + ivec2(k & 1, k >> 1)) * int(2u * push.stride);
     int pixel = pixelAt(inside(q) ? q : ivec2(0));
-    known[k] = inside(q) && seesSurface(seenSites[pixel]);
-    light[k] = known[k] ? outgoing(pixel) : 0.0;
+    IndirectTexel parent = gathered[pixel];
+    bool seen = inside(q) && seesSurface(seenSites[pixel]);
+    known[k] = seen && isKnown(parent);
+    light[k] = known[k] ? outgoing(parent) * push.inverseLuminance : 0.0;
+    broken = broken || (seen && !isUsable(parent));
   }
   float sum = 0.0;
   for (int j = 0; j < 4; ++j)
     for (int k = j + 1; k < 4; ++k) sum += known[j] && known[k] ? abs(light[j] - light[k]) : 0.0;
-  return sum;
+  return broken ? kInfinity : sum;
 }
 
 bool chosen(uint i) {
@@ -84,14 +89,18 @@ bool chosen(uint i) {
   if (push.rule == kSelectGrid || push.rule == kSelectScattered) return true;
   if (gathered[pixel].state == kIndirectSampled) return false;
   if (push.rule == kSelectUnsampled || gathered[pixel].count < 0.0) return true;
-  return geometricChange(p, own) + push.lambda * radianceChange(p) > push.threshold;
+  float light = radianceChange(p);
+  return light == kInfinity || !(geometricChange(p, own) + push.lambda * light <= push.threshold);
 }
 
 // Sum and number of what the candidates on the grid carry, one pair of words a workgroup.
 void sumLuminance(uint group, uint i) {
   ivec2 p = candidatePixel(i);
-  bool counts = i < push.candidates && inside(p) && seesSurface(seenSites[pixelAt(inside(p) ? p : ivec2(0))]);
-  scanFloats[gl_LocalInvocationIndex] = counts ? luminance(gathered[pixelAt(p)].diffuse + gathered[pixelAt(p)].glossy) : 0.0;
+  int pixel = pixelAt(inside(p) ? p : ivec2(0));
+  IndirectTexel light = gathered[pixel];
+  bool counts = i < push.candidates && inside(p) && seesSurface(seenSites[pixel]) && light.state == kIndirectSampled &&
+                isUsable(light);
+  scanFloats[gl_LocalInvocationIndex] = counts ? outgoing(light) : 0.0;
   uint number = scanInclusive(counts ? 1u : 0u);
   if (gl_LocalInvocationIndex != kPlacementGroup - 1u) return;
   float sum = 0.0;
