@@ -16,9 +16,8 @@ constexpr uint32_t kFirstLatePass = 4, kShares = 64;
 /// Coherence that tells different objects apart: thresholds that begin below stay there, so that edges are gathered at
 /// every level.
 constexpr float kObjectEdge = 0.9f;
-/// Radiance differences count against this many times the mean. The metric is written for display values, whose mean is about a
-/// fifth, and for gathers without noise; with a smaller factor noise is gathered, at twice the cost and no less error. [IPP §3.3]
-constexpr float kDisplayRange = 16.0f;
+/// Radiance differences count against this many times the mean: the metric is written for display values. [IPP §3.3]
+constexpr float kDisplayRange = 4.0f;
 
 }  // namespace
 
@@ -78,11 +77,8 @@ void PointProjectionTechnique::pushCoarsePicture() {
 // only where rays through sharp lobes end at them.
 void PointProjectionTechnique::planLighting() {
   pushRelight({0, m_light.layout().clusterSize}, m_settings.relightSamples, m_relightRate);
-  const uint32_t size = m_light.layout().clusterSize, atPoints = m_settings.bounces - (m_needs.sharp ? 0 : 1);
-  for (uint32_t bounce = 0; bounce < atPoints; ++bounce) {
-    const bool last = bounce + 1 == atPoints;  // the others reach only the points that the next one projects
-    pushBounce(bounce == 0, last ? size : std::min(kBounceSlots, size), bounce + 1 < m_settings.bounces);
-  }
+  const uint32_t atPoints = m_settings.bounces - (m_needs.sharp ? 0 : 1);
+  for (uint32_t bounce = 0; bounce < atPoints; ++bounce) pushBounce(bounce == 0, bounce + 1 < m_settings.bounces);
   m_tasks.push({"points lit", nullptr, [this](const TechniqueContext&) -> Result<uint32_t> {
                   m_lit = true;
                   return 0u;
@@ -96,11 +92,11 @@ void PointProjectionTechnique::pushRelight(SlotRange slots, uint32_t samples, Wo
                 }});
 }
 
-void PointProjectionTechnique::pushBounce(bool first, uint32_t endSlot, bool compose) {
+void PointProjectionTechnique::pushBounce(bool first, bool compose) {
   m_tasks.push({"bounce", &m_bounceRate, [this, first](const TechniqueContext& c) { return listBounceSites(c, first); },
                 [this](const TechniqueContext& c, uint32_t from, uint32_t count) { return gatherAtPoints(c, from, count); }, 32});
   m_tasks.push({"spread", &m_spreadRate,
-                [this, endSlot](const TechniqueContext&) -> Result<uint32_t> { return endSlot - std::min(m_bounceSlots, endSlot); },
+                [this](const TechniqueContext&) -> Result<uint32_t> { return m_light.layout().clusterSize - m_bounceSlots; },
                 [this, compose](const TechniqueContext& c, uint32_t from, uint32_t count) {
                   return spread(c, {m_bounceSlots + from, m_bounceSlots + from + count}, compose);
                 }});
