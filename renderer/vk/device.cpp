@@ -116,6 +116,7 @@ Result<void> Device::init() {
   m_physical = (*devices)[*chosen];
   m_queueFamily = *computeQueueFamily(m_physical);
   m_limits = readLimits(m_physical, m_queueFamily);
+  if (m_options.largestBuffer > 0) m_limits.maxBufferSize = std::min(m_limits.maxBufferSize, m_options.largestBuffer);
   m_features = readFeatures(m_physical);
   m_features.pushDescriptors = m_features.pushDescriptors && m_options.pushDescriptors;
   if (const VkResult r = createDevice(m_physical, m_queueFamily, m_features, &m_handle); r != VK_SUCCESS) {

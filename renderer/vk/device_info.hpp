@@ -14,6 +14,7 @@ struct DeviceOptions {
   bool validation = false;       ///< Khronos validation layer on, synchronization checks included; messages are counted
   std::string cacheDir;          ///< where the pipeline cache is kept between runs; "" keeps none
   bool assumeDiscrete = false;   ///< device-local memory is never mapped, as on a discrete GPU (tests the staging path)
+  uint64_t largestBuffer = 0;    ///< [byte] lowers the device's own limit; 0 does not (tests what a small device refuses)
   bool pushDescriptors = true;   ///< false takes descriptors from pools even where push descriptors exist
 };
 

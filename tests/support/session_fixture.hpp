@@ -64,8 +64,8 @@ inline SessionConfig smallPicture(uint32_t width = 32, uint32_t height = 32) {
 /// A session with its three boxes, driven by the test's own thread.
 class TestSession {
  public:
-  TestSession(Scene scene, const SessionConfig& config)
-      : m_session(must(Session::create(device(), std::move(scene), {}, config, mailbox, frames, replies))) {
+  TestSession(Scene scene, const SessionConfig& config, vk::Device& on = device())
+      : m_session(must(Session::create(on, std::move(scene), {}, config, mailbox, frames, replies))) {
     frames.onPublish([this] { published.push_back(frames.newest()); });
   }
   Session* operator->() const { return m_session.get(); }

@@ -1,0 +1,69 @@
+// A scene that the device cannot hold is refused, and the one before it is rendered on as if nothing had been asked.
+#include <gtest/gtest.h>
+
+#include "tests/support/rich_scene.hpp"
+#include "tests/support/session_fixture.hpp"
+
+namespace limn::test {
+namespace {
+
+constexpr uint64_t kLargestBuffer = 1 << 20;
+
+/// A ball whose vertices alone need several times the largest buffer.
+Scene largeScene() {
+  SceneBuilder b;
+  b.scene = plainScene();
+  b.sphere(0, {0, 0, 0}, 0.5f, 220);
+  b.scene.name = "large";
+  return b.scene;
+}
+
+uint32_t load(TestSession& session, Scene scene) {
+  LoadRequest request;
+  request.loaded = std::make_shared<LoadedScene>(LoadedScene{std::move(scene), {}});
+  return session.ask(std::move(request));
+}
+
+TEST(RefusedLoad, KeepsTheSceneItsPictureAndItsEdits) {
+  vk::DeviceOptions options;
+  options.validation = true;
+  options.cacheDir = LIMN_BUILD_DIR "/test-pipelines";
+  options.largestBuffer = kLargestBuffer;
+  const auto small = must(vk::Device::open(options));
+  ASSERT_EQ(small->limits().maxBufferSize, kLargestBuffer);
+  const auto log = small->validationLog();
+  {
+    TestSession session(plainScene(), smallPicture(), *small);
+    SetLight dim;
+    dim.intensity = 1.5f;
+    session.apply({dim});
+    session.run(3);
+    const uint64_t scene = session.scene().hash(), film = session.hash();
+    const Status before = session.status();
+
+    const uint32_t seq = load(session, largeScene());
+    session.run(3);
+    const std::vector<Reply> replies = session.takeReplies();
+    ASSERT_EQ(replies.size(), 1u);
+    const auto* refused = std::get_if<ErrorReply>(&replies[0]);
+    ASSERT_NE(refused, nullptr);
+    EXPECT_EQ(refused->to.seq, seq);
+    EXPECT_EQ(refused->error.code, "limit");
+    EXPECT_NE(refused->error.message.find("maxBufferSize"), std::string::npos) << refused->error.message;
+    EXPECT_EQ(session.scene().hash(), scene);
+    EXPECT_EQ(session.hash(), film) << "the same samples of the same scene, the edit's light included";
+    EXPECT_EQ(session.status().editsApplied, before.editsApplied);
+
+    // Nothing is left of the refused one: edits of the old scene and a load that fits go on as ever.
+    dim.intensity = 2.5f;
+    EXPECT_EQ(session.apply({dim}).cost, CostClass::relight);
+    load(session, plainScene());
+    session.run(3);
+    EXPECT_EQ(session.take<LoadReply>().size(), 1u);
+    EXPECT_EQ(session.hash(), freshHash(plainScene(), smallPicture(), 3));
+  }
+  EXPECT_EQ(log->count(), 0u);
+}
+
+}  // namespace
+}  // namespace limn::test
