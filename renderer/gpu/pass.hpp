@@ -41,7 +41,7 @@ class Pass {
   explicit operator bool() const { return bool(m_pipeline); }
 
  private:
-  /// Where an acceleration structure is bound, a shader that traces (limn_tracing_shader in shaders.cmake) uses ray queries.
+  /// Where an acceleration structure is bound, a shader that traces (limn_tracing_shader) uses ray queries.
   static std::span<const uint32_t> tracingVariant(const std::string& shader, const std::vector<vk::Binding>& like) {
     for (const vk::Binding& binding : like) {
       if (binding.kind != vk::BindingKind::acceleration) continue;

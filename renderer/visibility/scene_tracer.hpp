@@ -14,14 +14,14 @@ enum class TraceMethod {
   rayQuery,  ///< SceneAcceleration, by shaders/lib/trace_ray_query.glsl
 };
 
-/// What shaders trace rays against: the scene's triangles in one of two forms, of which only the one in use is built. Its
-/// bindings say which it is, and gpu::Pass takes the variant of a shader that goes with them. Render thread.
+/// What shaders trace rays against: the scene's triangles in one of two forms, of which only the one in use is built.
+/// Its bindings say which it is, and gpu::Pass takes the variant of a shader that goes with them. Render thread.
 class SceneTracer {
  public:
   explicit SceneTracer(TraceMethod method = TraceMethod::best) : m_method(method) {}
 
-  /// As SceneBvh::update. Errors: those of SceneBvh or SceneAcceleration; "unsupported" for a rayQuery that was asked for where
-  /// the device has none.
+  /// As SceneBvh::update. Errors: those of SceneBvh or SceneAcceleration; "unsupported" for a rayQuery that was asked
+  /// for where the device has none.
   Result<void> update(vk::Device& device, std::span<const TriangleBlock> blocks, std::span<const uint32_t> changed);
 
   /// For every shader that includes lib/trace.glsl after lib/scene_bindings.glsl. Valid after the first update.

@@ -89,9 +89,9 @@ Result<void> checkLimits(const Device& device, const BufferDesc& desc) {
   return {};
 }
 
-/// The bytes that a buffer is made with. Mesa's software device (22.3) compiles a shader anew, at the dispatch, when a texel
-/// buffer is the first that is, or is not, a power of two long, or whose length has, or has not, an empty second byte. A
-/// little room at the end makes all of them neither.
+/// The bytes that a buffer is made with. Mesa's software device (22.3) compiles a shader anew, at the dispatch, when a
+/// texel buffer is the first that is, or is not, a power of two long, or whose length has, or has not, an empty second
+/// byte. A little room at the end makes all of them neither.
 size_t roomFor(const Device& device, const BufferDesc& desc) {
   if (!has(desc.usage, BufferUsage::texel)) return desc.size;
   BufferDesc padded = desc;

@@ -33,7 +33,8 @@ Soup spheres(uint32_t seed) {
 /// The rule of trace_rays.comp, left open where rounding could decide.
 Accepts checkers(const Soup& soup) {
   std::vector<bool> tested;
-  for (const Object& object : soup.objects) tested.resize(tested.size() + object.corners.size() / 3, object.alphaTested);
+  for (const Object& object : soup.objects)
+    tested.resize(tested.size() + object.corners.size() / 3, object.alphaTested);
   return [tested](uint32_t triangle, glm::dvec2 barycentrics) -> std::optional<bool> {
     if (!tested[triangle]) return true;
     if (std::abs(barycentrics.x - 0.3) < 1e-3) return std::nullopt;
@@ -42,7 +43,8 @@ Accepts checkers(const Soup& soup) {
 }
 
 /// `tree` is what the shader of trace_rays.comp has at its first bindings.
-std::vector<RayHit> trace(const std::vector<vk::Binding>& tree, const std::vector<Ray>& rays, const std::string& shader) {
+std::vector<RayHit> trace(const std::vector<vk::Binding>& tree, const std::vector<Ray>& rays,
+                          const std::string& shader) {
   static std::map<std::string, gpu::Pass> passes;
   if (passes.empty()) SharedDevice::atEnd([] { passes.clear(); });
   vk::BufferDesc desc{rays.size() * sizeof(Ray), vk::BufferUsage::texel, vk::MemoryKind::upload, "rays", "test",
@@ -84,8 +86,8 @@ bool refusesAsItShould() {
   return true;
 }
 
-/// Whether no rounding may decide what `ray` meets up to its end: it stays off every edge, off the borders of what the alpha
-/// rule accepts, and crosses no plane at a grazing angle.
+/// Whether no rounding may decide what `ray` meets up to its end: it stays off every edge, off the borders of what the
+/// alpha rule accepts, and crosses no plane at a grazing angle.
 bool isClear(const Ray& ray, double end, std::span<const glm::vec3> corners, const Accepts& accepts) {
   const double length = glm::length(glm::dvec3(ray.dirR));
   for (uint32_t i = 0; i < corners.size() / 3; ++i) {

@@ -1,4 +1,5 @@
-// Drivers that compile at the first dispatch do so by what is bound. Whatever a table's size is later, warming up once must do.
+// Drivers that compile at the first dispatch do so by what is bound. Whatever a table's size is later, warming up once
+// must do.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -45,7 +46,8 @@ TEST(WarmUp, OneIsEnoughForTablesOfEverySize) {
   // Powers of two, and sizes whose second byte is zero: 22.3 of Mesa's software device tells them apart.
   for (const size_t count : {3, 1, 4, 64, 65, 2048, 2049, 4096, 6144, 1 << 16, 1 << 20}) {
     const vk::Buffer rays = raysOf(count);
-    const double dispatched = secondsOf([&](vk::CommandRecorder& r) { pass.record(r, bindings(rays), uint32_t(1), 1); });
+    const double dispatched =
+        secondsOf([&](vk::CommandRecorder& r) { pass.record(r, bindings(rays), uint32_t(1), 1); });
     EXPECT_LT(dispatched, compiled / 5) << count << " rays; compiling takes " << compiled << " s";
   }
 }

@@ -1,5 +1,5 @@
-// No pipeline is compiled after the first frame, not even by a driver that compiles at the first dispatch: no turn of the loop
-// takes a share of what warming up took.
+// No pipeline is compiled after the first frame, not even by a driver that compiles at the first dispatch: no turn of
+// the loop takes a share of what warming up took.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,8 +14,8 @@ namespace {
 /// The driver keeps nothing on disk, so that every compilation costs its full time.
 const bool kWithoutDriverCache = setenv("MESA_SHADER_CACHE_DISABLE", "true", 1) == 0;
 
-/// The rich scene with a fan that makes it `triangles` in all, so that tables have lengths of every kind. Its needs are the same
-/// for all.
+/// The rich scene with a fan that makes it `triangles` in all, so that tables have lengths of every kind. Its needs are
+/// the same for all.
 Scene sceneOf(size_t triangles) {
   RichScene rich = richScene();
   SceneBuilder b;
