@@ -81,5 +81,6 @@ Result<std::shared_ptr<const Frame>> Session::resolveFrame() {
   return m_impl->makeFrame();
 }
 const Scene& Session::scene() const { return m_impl->scene; }
+const Technique& Session::technique() const { return *m_impl->technique; }
 
 }  // namespace limn

@@ -10,6 +10,8 @@ namespace limn::vk { class Device; }
 
 namespace limn {
 
+class Technique;
+
 struct SessionConfig {
   uint32_t width = 512, height = 512;  ///< [pixel]
   std::string technique;               ///< empty: the first of the registry
@@ -51,6 +53,7 @@ class Session {
   /// The picture as it would be published now.
   Result<std::shared_ptr<const Frame>> resolveFrame();
   const Scene& scene() const;
+  const Technique& technique() const;
 
  private:
   struct Impl;

@@ -92,6 +92,8 @@ Result<void> PointProjectionTechnique::updatePoints(const TechniqueContext& cont
   if (m_pointsKnown && m_lightingRevision == context.lightingRevision) return {};
   auto updated = m_points.update(context.device, context.description, context.scene, m_settings.points, m_settings.clusters, kPointSeed);
   if (!updated) return updated.error();
+  m_work.blocksSampled += updated->sampledBlocks;
+  m_work.pointUpdates += updated->changed;
   m_lightingRevision = context.lightingRevision;
   m_pointsKnown = true;
   m_lit = false;

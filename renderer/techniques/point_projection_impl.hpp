@@ -12,6 +12,15 @@
 
 namespace limn {
 
+/// What was done since the technique was made; tells what an edit costs.
+struct PointProjectionWork {
+  uint64_t blocksSampled = 0;  ///< got new points
+  uint64_t pointUpdates = 0;   ///< of the points as a whole, moved ones included
+  uint64_t slotsLit = 0;       ///< of every cluster, by rays
+  uint64_t bounceSites = 0;    ///< gathered at points
+  uint64_t pixelsGathered = 0;
+};
+
 /// Values of the announced parameters.
 struct PointProjectionSettings {
   uint32_t points = 0, clusters = 0, projections = 0, microSize = 0, bounces = 0, relightSamples = 0, startGrid = 0,
@@ -35,6 +44,7 @@ class PointProjectionTechnique final : public Technique {
   uint64_t raysTraced() const override;
   uint64_t discardedSamples() const override;
   const vk::Buffer* indirect() const override { return &m_indirect; }
+  const PointProjectionWork& work() const { return m_work; }
 
  private:
   // point_projection.cpp
@@ -109,6 +119,7 @@ class PointProjectionTechnique final : public Technique {
   uint32_t m_shaded = 0;       ///< pixels of the first picture, in the order of m_pixelOrder
   uint32_t m_fillStride = 8;
   bool m_converged = false;
+  PointProjectionWork m_work;
 };
 
 }  // namespace limn

@@ -23,6 +23,7 @@ Result<void> PointProjectionTechnique::relight(const TechniqueContext& context, 
     m_light.recordCompose(r, lighting, slots);
   });
   m_litSlots = slots.end;
+  m_work.slotsLit += slots.end - slots.first;
   return done;
 }
 
@@ -40,12 +41,14 @@ shared::PointProjectionPush PointProjectionTechnique::gatherPush(const Technique
 Result<void> PointProjectionTechnique::gather(const TechniqueContext& context, uint32_t first, uint32_t count) {
   const auto push = gatherPush(context, first, count);
   const auto all = gatherBindings(context);
+  m_work.pixelsGathered += count;
   return gpu::runNow(context.device, [&](vk::CommandRecorder& r) { m_gather.recordAtPixels(r, all, push); });
 }
 
 Result<void> PointProjectionTechnique::gatherAtPoints(const TechniqueContext& context, uint32_t first, uint32_t count) {
   auto push = gatherPush(context, first, count);
-  push.projections = std::min(kBounceProjections, m_settings.projections);
+  push.projections = kBounceProjections;  // whatever pixels project: points stay lit when that is changed
+  m_work.bounceSites += count;
   push.round = 0;
   const auto all = bounceBindings(context);
   return gpu::runNow(context.device, [&](vk::CommandRecorder& r) { m_gather.recordAtPoints(r, all, push); });
