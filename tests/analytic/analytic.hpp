@@ -13,7 +13,7 @@
 namespace limn::test {
 
 constexpr double kPi = std::numbers::pi;
-/// Of one comparison: about sixty in these programs, so that all together err by chance in one of 100 seeds.
+/// Of one comparison: about eighty in these programs, so that all together err by chance in one of 75 seeds.
 constexpr double kLevel = 0.01 / 60;
 
 inline FilmImage render(const SceneBuilder& builder, const RenderOptions& options = {}) {
