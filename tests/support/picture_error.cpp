@@ -1,0 +1,109 @@
+#include "tests/support/picture_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "renderer/base/check.hpp"
+
+namespace limn::test {
+namespace {
+
+const std::vector<float>& dataOf(const FilmImage& picture, const std::string& layer) {
+  const FilmLayer* found = picture.find(layer);
+  LIMN_CHECK(found != nullptr);
+  return found->data;
+}
+
+double luminance(const std::vector<float>& rgb, size_t pixel) {
+  return 0.2126 * rgb[3 * pixel] + 0.7152 * rgb[3 * pixel + 1] + 0.0722 * rgb[3 * pixel + 2];
+}
+
+/// Mean of (x−r)(y−s) over the square of the reference, whose noise `r` and `s` share none of.
+double meanQuotient(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& r, const std::vector<float>& s) {
+  double mean = 0.0, sum = 0.0;
+  for (size_t i = 0; i < r.size(); ++i) mean += 0.5 * (double(r[i]) + s[i]) / double(r.size());
+  for (size_t i = 0; i < r.size(); ++i) {
+    const double truth = 0.5 * (double(r[i]) + s[i]);
+    sum += (double(x[i]) - r[i]) * (double(y[i]) - s[i]) / (truth * truth + 0.01 * mean * mean + 1e-30);
+  }
+  return sum / double(r.size());
+}
+
+struct Sums {
+  double difference = 0.0, variance = 0.0, scale = 0.0;
+  double deviation() const {
+    const double error = std::sqrt(variance) + 1e-5 * scale;  // what both know only to rounding is equal
+    return error > 0.0 ? std::abs(difference) / error : 0.0;
+  }
+};
+
+}  // namespace
+
+double biasOf(const PicturePair& pair, const PicturePair& reference, const std::string& layer) {
+  return meanQuotient(dataOf(pair.a, layer), dataOf(pair.b, layer), dataOf(reference.a, layer), dataOf(reference.b, layer));
+}
+
+double relMseOf(const FilmImage& picture, const PicturePair& reference, const std::string& layer) {
+  const auto& x = dataOf(picture, layer);
+  return meanQuotient(x, x, dataOf(reference.a, layer), dataOf(reference.b, layer));
+}
+
+Deviation deviationOf(const PicturePair& pair, const PicturePair& reference, const std::string& layer) {
+  const std::vector<float>*all[] = {&dataOf(pair.a, layer), &dataOf(pair.b, layer), &dataOf(reference.a, layer),
+                                    &dataOf(reference.b, layer)};
+  const uint32_t width = pair.a.width, tilesX = (width + 7) / 8, tilesY = (pair.a.height + 7) / 8;
+  std::vector<Sums> tiles(size_t(tilesX) * tilesY);
+  Sums whole;
+  for (size_t i = 0; i < size_t(width) * pair.a.height; ++i) {
+    double v[4];
+    for (int k = 0; k < 4; ++k) v[k] = luminance(*all[k], i);
+    for (Sums* s : {&whole, &tiles[i / width / 8 * tilesX + i % width / 8]}) {
+      s->difference += 0.5 * (v[0] + v[1] - v[2] - v[3]);
+      s->variance += 0.25 * ((v[0] - v[1]) * (v[0] - v[1]) + (v[2] - v[3]) * (v[2] - v[3]));
+      s->scale += 0.5 * std::abs(v[2] + v[3]);
+    }
+  }
+  Deviation d{whole.deviation(), 0.0};
+  for (const Sums& s : tiles) d.worstTile = std::max(d.worstTile, s.deviation());
+  return d;
+}
+
+double meanOf(const FilmImage& picture, const std::string& layer) {
+  const auto& data = dataOf(picture, layer);
+  double sum = 0.0;
+  for (const float v : data) sum += v;
+  return sum / double(data.size());
+}
+
+double largestOf(const FilmImage& picture, const std::string& layer) {
+  const auto& data = dataOf(picture, layer);
+  return *std::max_element(data.begin(), data.end());
+}
+
+bool isSound(const FilmImage& picture) {
+  for (const FilmLayer& layer : picture.layers)
+    if (!std::all_of(layer.data.begin(), layer.data.end(), [](float v) { return std::isfinite(v); })) return false;
+  const auto &beauty = dataOf(picture, "beauty"), &direct = dataOf(picture, "direct"), &indirect = dataOf(picture, "indirect");
+  for (size_t i = 0; i < beauty.size(); ++i)
+    if (std::min({beauty[i], direct[i], indirect[i]}) < -1e-5f * std::max(beauty[i], direct[i])) return false;
+  return true;
+}
+
+int firefliesOf(const FilmImage& picture, const FilmImage& reference, double factor) {
+  const auto &x = dataOf(picture, "beauty"), &r = dataOf(reference, "beauty");
+  const int width = int(picture.width), height = int(picture.height);
+  const double floor = 0.1 * meanOf(reference, "beauty");
+  int count = 0;
+  for (int i = 0; i < width * height; ++i) {
+    double around = floor;
+    for (int k = 0; k < 9; ++k) {
+      const int qx = i % width + k % 3 - 1, qy = i / width + k / 3 - 1;
+      if (qx >= 0 && qy >= 0 && qx < width && qy < height) around = std::max(around, luminance(r, size_t(qy * width + qx)));
+    }
+    count += luminance(x, size_t(i)) > factor * around;
+  }
+  return count;
+}
+
+}  // namespace limn::test
