@@ -9,8 +9,8 @@ struct WorkGroups {
   uint32_t x, y;
 };
 
-/// At least `count` workgroups in rows, both numbers within every device's limit of 65,535. Shaders take
-/// gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x for the number of a workgroup; those past the end do nothing.
+/// At least `count` workgroups in rows, both numbers within every device's limit of 65,535. Shaders number a workgroup
+/// gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; those past the end do nothing.
 inline WorkGroups groupsInRows(uint32_t count) {
   constexpr uint32_t kRow = 4096;
   return {std::min(count, kRow), (count + kRow - 1) / kRow};

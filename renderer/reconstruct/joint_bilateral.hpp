@@ -28,8 +28,9 @@ class JointBilateral {
 
   /// Rows of the grid of `stride` [pixel].
   uint32_t gridRows(uint32_t stride) const { return (m_height + stride - 1) / stride; }
-  /// Pixels of the grid of `stride` that are not sampled take their parents' light, on the grid of twice that; a count of
-  /// kCountFar or kCountGuessed says that none of the four was on the same surface. Ends with a barrier.
+  /// Pixels of the grid of `stride` that are not sampled take their parents' light, on the grid of twice that. A count
+  /// of kCountFar or kCountGuessed says that none of the four was on the same surface; the state is kIndirectNone where
+  /// none had any light. Ends with a barrier.
   void recordInterpolate(vk::CommandRecorder& recorder, const ReconstructBuffers& buffers,
                          uint32_t stride) const;
   /// Filters rows of the picture into `filtered`; diffuse light over `size` x `size` pixels, glossy over 3x3 at most.

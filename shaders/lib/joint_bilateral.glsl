@@ -60,8 +60,10 @@ void addTo(inout LightMean m, IndirectTexel light, float weight) {
   addTo(m.glossy, light.glossy, weight);
 }
 
+// A mean of nothing is none.
 IndirectTexel interpolated(LightMean m, float count) {
-  return IndirectTexel(valueOf(m.diffuse), count, valueOf(m.glossy), kIndirectInterpolated);
+  float state = m.diffuse.weight > 0.0 ? kIndirectInterpolated : kIndirectNone;
+  return IndirectTexel(valueOf(m.diffuse), count, valueOf(m.glossy), state);
 }
 
 bool outside(ivec2 q, ivec2 size) { return any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, size)); }
@@ -97,7 +99,8 @@ LightMean meanOfCell(vec2 place, int stride, ivec2 size, vec3 posR, vec3 normal,
 }
 
 // Gathered light for a surface seen at `place` (continuous, 0,0 is the upper left corner of the picture), from a
-// picture in which every pixel has some. Where no pixel around sees the same surface, the pixel's own is the best guess.
+// picture in which every pixel has some. Where no pixel around sees the same surface, the pixel's own is the best
+// guess.
 void lookUpIndirect(vec2 place, ivec2 size, vec3 posR, vec3 normal, uint object, out IndirectTexel light) {
   LightMean m = meanOfCell(place - 0.5, 1, size, posR, normal, object);
   if (m.diffuse.weight < kKnownWeight) m = meanAround(ivec2(place), 1, size, posR, normal, object);

@@ -33,12 +33,12 @@ void main() {
       if (near || !known) addTo(glossy, light.glossy, weight * weightOf(light));
     }
   IndirectTexel result = centre;
-  if (seesSurface(s) && centre.state != kIndirectNone) {
-    bool enough = diffuse.weight >= kKnownWeight;
-    if (enough) {
-      result = IndirectTexel(valueOf(diffuse), known ? centre.count : 0.0, valueOf(glossy), centre.state);
+  if (seesSurface(s)) {
+    if (diffuse.weight >= kKnownWeight) {
+      float count = known ? centre.count : 0.0, state = known ? centre.state : kIndirectInterpolated;
+      result = IndirectTexel(valueOf(diffuse), count, valueOf(glossy), state);
     } else if (!isUsable(centre)) {
-      result = IndirectTexel(vec3(0.0), kCountGuessed, vec3(0.0), kIndirectInterpolated);
+      result = IndirectTexel(vec3(0.0), kCountGuessed, vec3(0.0), kIndirectNone);
     }
   }
   filtered[own] = result;
