@@ -36,19 +36,20 @@ float alikeness(vec3 posR, vec3 normal, uint object, GatherSite other) {
 const float kLeastWeight = 1e-6;  // smaller ones are none
 const float kKnownWeight = 1e-3;  // under it the places around say nothing
 
-// A weighted mean. It lies between the values it is made of: what is constant stays so to the last bit.
-struct Mean { vec3 sum, least, most; float weight; };
+// A weighted mean, summed as differences to the first value: what is constant stays so to the last bit. No weight is so
+// small that the rounding of a difference would matter beside what the first value adds itself.
+struct Mean { vec3 first, sum; float weight; };
 
-Mean emptyMean() { return Mean(vec3(0.0), vec3(kInfinity), vec3(-kInfinity), 0.0); }
+Mean emptyMean() { return Mean(vec3(0.0), vec3(0.0), 0.0); }
 
 void addTo(inout Mean m, vec3 value, float weight) {
-  m.sum += value * weight;
-  m.least = min(m.least, value);
-  m.most = max(m.most, value);
+  m.first = m.weight > 0.0 ? m.first : value;
+  m.sum += (value - m.first) * weight;
   m.weight += weight;
 }
 
-vec3 valueOf(Mean m) { return m.weight > 0.0 ? clamp(m.sum / m.weight, m.least, m.most) : vec3(0.0); }
+// Of light: rounding makes none negative.
+vec3 valueOf(Mean m) { return m.weight > 0.0 ? max(m.first + m.sum / m.weight, vec3(0.0)) : vec3(0.0); }
 
 struct LightMean { Mean diffuse, glossy; };
 

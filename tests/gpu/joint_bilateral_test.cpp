@@ -294,6 +294,18 @@ TEST(JointBilateral, ASurfaceBesideTheCellLightsWhatHasNoParentInIt) {
   EXPECT_EQ(p.light[p.at(24, 8)].count, 0.0f);
 }
 
+TEST(JointBilateral, WhatIsBrightButHardlyFitsMakesNothingNegative) {
+  Picture p = planePicture(8, 8);
+  eachPixel(p, [](int x, int y, GatherSite& s, IndirectTexel& l) {
+    l = sampledLight(glm::vec3(x + y == 0 ? 1.1e6f : 0.0f));
+    l.count = x + y == 0 ? 1.0f : 3000.0f;
+    if (x + y == 0) s.normal = gpu::octEncode(glm::normalize(glm::vec3(1.0f, 0.0f, 0.49f)));  // weighs 4e-6
+  });
+  const Texels light = filter(p, 7);
+  for (size_t i = 1; i < p.pixels(); ++i) EXPECT_GE(light[i].diffuse.x, 0.0f) << i;
+  EXPECT_LT(light[p.at(1, 0)].diffuse.x, 1.0f);
+}
+
 TEST(JointBilateral, LightThatIsNoNumberNeverSpreads) {
   const auto finite = [](const IndirectTexel& l) { return Reference::usable(l); };
   for (const uint32_t seed : {1u, 2u}) {
