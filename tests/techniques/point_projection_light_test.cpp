@@ -1,0 +1,110 @@
+// Light by point projection against paths of as many bounces: direct light is the same but for noise, gathered light within
+// the bounds stated here, which are those of the technique's bias at the sizes used. Pictures of few pixels ask more of it than
+// large ones: corners and contacts, where gathers are worst, are a larger share of them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/scene_builder.hpp"
+#include "tests/support/technique_pictures.hpp"
+
+namespace limn::test {
+namespace {
+
+constexpr uint32_t kWidth = 48, kHeight = 36;
+constexpr uint32_t kPasses = 80;  // by then every pixel was gathered
+constexpr uint32_t kSphere = 6;   // mesh of cornellLike()
+
+/// The lamp flush with the ceiling, which is open above it.
+SceneBuilder flushLamp() {
+  SceneBuilder b = cornellLike();
+  b.scene.nodes[1].mesh = b.scene.nodes[7].mesh = kNone;
+  const float sides[] = {-1.0f, -0.3f, 0.3f, 1.0f};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const float x = sides[i], z = sides[j], x1 = sides[i + 1], z1 = sides[j + 1];
+      b.quad(i == 1 && j == 1 ? 3 : 0, {x, 1, z}, {x1, 1, z}, {x1, 1, z1}, {x, 1, z1});
+    }
+  return b;
+}
+
+SceneBuilder withPointLight() {
+  SceneBuilder b = cornellLike();
+  b.scene.materials[3].emission = glm::vec3(0.0f);
+  b.pointLight({0.0f, 0.7f, 0.2f}, {1.0f, 0.9f, 0.7f}, 6.0f);
+  return b;
+}
+
+Scene withSphere(SceneBuilder b, float metallic, float roughness, float transmission = 0.0f) {
+  Material m;
+  m.baseColor = {0.9f, 0.8f, 0.6f, 1.0f};
+  m.metallic = metallic;
+  m.roughness = roughness;
+  m.transmission = transmission;
+  m.thickness = transmission;
+  b.scene.meshes[kSphere].primitives[0].material = int32_t(b.material(m));
+  return b.scene;
+}
+
+/// What separates the two techniques; the filter is left out unless told, for it blurs by pixels, of which there are few.
+struct Difference {
+  Deviation direct;
+  double indirect = 0.0, beauty = 0.0;  ///< bias, as relMSE
+  double energy = 0.0;                  ///< indirect light over that of paths
+  int fireflies = 0;
+};
+
+Difference differenceOf(const Scene& scene, uint32_t bounces, uint32_t pathBounces,
+                        Parameters more = {{"filterSize", 1.0}}) {
+  const PicturePair truth = pairOf(scene, pathTracing(kWidth, kHeight, pathBounces, 512));
+  const PicturePair pair = pairOf(scene, pointProjection(kWidth, kHeight, bounces, kPasses, std::move(more)));
+  for (const FilmImage* film : {&pair.a, &pair.b}) EXPECT_TRUE(isSound(*film));
+  return {deviationOf(pair, truth, "direct"), biasOf(pair, truth, "indirect"), biasOf(pair, truth, "beauty"),
+          meanOf(pair.a, "indirect") / meanOf(truth.a, "indirect"), firefliesOf(pair.a, truth.a, 20.0)};
+}
+
+void expectAlike(const Difference& d, double indirect, double energy) {
+  EXPECT_LT(d.direct.whole, 3.0);
+  EXPECT_LT(d.direct.worstTile, 5.0);
+  EXPECT_LT(d.indirect, indirect);
+  EXPECT_NEAR(d.energy, 1.0, energy);
+  EXPECT_EQ(d.fireflies, 0);
+}
+
+TEST(PointProjectionLight, AreaLight) {
+  expectAlike(differenceOf(flushLamp().scene, 1, 1), 0.02, 0.06);
+  expectAlike(differenceOf(flushLamp().scene, 3, 3), 0.02, 0.06);
+}
+
+TEST(PointProjectionLight, PointLight) {
+  expectAlike(differenceOf(withPointLight().scene, 1, 1), 0.03, 0.06);
+  expectAlike(differenceOf(withPointLight().scene, 3, 3), 0.03, 0.06);
+}
+
+TEST(PointProjectionLight, RoughMetal) {
+  const Scene scene = withSphere(flushLamp(), 1.0f, 0.6f);
+  expectAlike(differenceOf(scene, 1, 1), 0.02, 0.06);
+  expectAlike(differenceOf(scene, 3, 3), 0.02, 0.06);
+}
+
+// Rays through sharp lobes make no bounce of gathers: both end where it no longer matters.
+TEST(PointProjectionLight, Mirror) { expectAlike(differenceOf(withSphere(flushLamp(), 1.0f, 0.0f), 8, 12), 0.02, 0.06); }
+
+TEST(PointProjectionLight, Glass) { expectAlike(differenceOf(withSphere(flushLamp(), 0.0f, 0.0f, 1.0f), 8, 16), 0.04, 0.06); }
+
+TEST(PointProjectionLight, TheFilterBlursByPixelsWhatNoEdgeTellsApart) {
+  const Difference d = differenceOf(withPointLight().scene, 1, 1, {});
+  EXPECT_LT(d.indirect, 0.35);
+  EXPECT_LT(d.beauty, 0.04);
+}
+
+// A lamp 1 cm under the ceiling, which shines up too: what lies behind a surface by less than splats are apart shines through.
+TEST(PointProjectionLight, AGapNarrowerThanSplatsLeaks) {
+  const Difference d = differenceOf(cornellLike().scene, 3, 3);
+  EXPECT_LT(d.energy, 1.7);
+  EXPECT_LT(d.beauty, 0.06);
+  EXPECT_EQ(d.fireflies, 0);
+}
+
+}  // namespace
+}  // namespace limn::test
