@@ -9,7 +9,7 @@ namespace {
 constexpr uint32_t kWorkgroup = 64;  // of gather_sites.comp and point_projection_shade.comp
 
 /// Points projected at a site of a bounce: what they miss is averaged over many sites.
-constexpr uint32_t kBounceProjections = 1536;
+constexpr uint32_t kBounceProjections = 4096;
 
 uint32_t workgroups(uint32_t entries) { return (entries + kWorkgroup - 1) / kWorkgroup; }
 

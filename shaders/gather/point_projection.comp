@@ -25,7 +25,9 @@ const uint kMostTexels = 1024u, kMostProjections = kMostSamples, kMostGroup = 12
 const uint kExplored = 2u;       // points of a cluster
 // Splats cover the texels whose middles are in their square. Squares of a whole texel grow what they show by half a texel
 // all around; narrower ones leave holes, which mostly close again. Measured: the least error against rays.
-const float kNarrowestSplat = kSelection == kEveryPoint ? 1.0 : 0.8, kWidestSplat = 16.0;  // [texel]
+const float kNarrowestSplat = kSelection == kEveryPoint ? 1.0 : 0.88, kWidestSplat = 16.0;  // [texel]
+const float kDiskShare = 1.3;  // of the area a point stands for: disks that only just fill a surface leave gaps between them
+const uint kHoleTurns = 2u;    // texels that holes close from their rims inwards
 const uint kEmpty = 0xffffffffu;
 
 layout(local_size_x = 64, local_size_x_id = 17) in;
@@ -87,10 +89,8 @@ void explore(Site s, uint key) {
     clusterRun[k] = bits;
     float total = 0.0;
     for (uint j = 0u; j < kExplored; ++j) {
-      uint point = k * push.clusterSize + wrap(bits % push.clusterUsed + j), number = kExplored * k + j;
+      uint point = k * push.clusterSize + wrap(bits % push.clusterUsed + j);
       View v = look(s, point);
-      projected[number] = facing(point, v);
-      splat(v, area, depthKey(v.d2) | number);
       float solidAngle = diskSolidAngle(v, area) / v.d2;  // the two lengths in it are taken out
       float value = v.local.z * s.albedo;
       if (kUseSpecular) {
@@ -131,18 +131,30 @@ void findClusters(uint base, uint samples) {
   barrier();
 }
 
-// A run of points of every cluster, after the two that explored it: their order is progressive, so that a run is spread
+// What each projected point of a cluster stands for [m²]: those that explored and those drawn share it. [IPP eq. 3] A point of
+// exploration alone would stand for half its cluster, and hide whatever lies behind that.
+float sharedArea(uint cluster) {
+  float share = clamp(importance[cluster] + float(kExplored), 1.0, float(push.clusterUsed));
+  return kDiskShare * pointArea() * float(push.clusterUsed) / share;
+}
+
+void projectPoint(Site s, uint cluster, uint slot, uint number) {
+  uint point = cluster * push.clusterSize + slot;
+  View v = look(s, point);
+  projected[number] = facing(point, v);
+  splat(v, sharedArea(cluster), depthKey(v.d2) | number);
+}
+
+// A run of points of every cluster, from the two that explored it on: their order is progressive, so that a run is spread
 // over the cluster.
 void exploit(Site s, uint key, uint base, uint samples) {
+  for (uint k = gl_LocalInvocationIndex; k < push.clusterCount; k += kGroup)
+    for (uint j = 0u; j < kExplored; ++j) projectPoint(s, k, wrap((clusterRun[k] >> kSampleBits) + j), kExplored * k + j);
   for (uint i = gl_LocalInvocationIndex; i < samples; i += kGroup) {
     uint number = base + i, cluster = projected[number], run = clusterRun[cluster];
     uint slot = wrap((run >> kSampleBits) + kExplored + (i - (run & kSampleMask)));
     if (kSelection == kAtRandom) slot = hash(key + i * 0x85ebca6bu) % push.clusterUsed;
-    uint point = cluster * push.clusterSize + slot;
-    View v = look(s, point);
-    float share = clamp(importance[cluster], 1.0, float(push.clusterUsed));
-    projected[number] = facing(point, v);
-    splat(v, pointArea() * float(push.clusterUsed) / share, depthKey(v.d2) | number);
+    projectPoint(s, cluster, slot, number);
   }
 }
 
@@ -165,27 +177,39 @@ void projectAll(Site s) {
   }
 }
 
-uint nearestAt(ivec2 texel) {
+uint wordAt(ivec2 texel) {
   bool inside = all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, ivec2(push.microSize)));
   return inside ? micro[uint(texel.y) * push.microSize + uint(texel.x)] : kEmpty;
 }
 
-// What covers texel `i`. A hole with three covered neighbours is one between the splats of a surface: the nearest
-// closes it.
-uint covering(uint i) {
-  uint word = micro[i];
-  if (kSelection == kEveryPoint || kSplatSide != 0u) return word;
+// What is put into texel `i`: an empty one that is covered on most sides takes the nearest of what is there.
+uint closed(uint i) {
   ivec2 t = ivec2(i % push.microSize, i / push.microSize);
-  ivec2 x = ivec2(1, 0), y = ivec2(0, 1);
-  uvec4 around = uvec4(nearestAt(t - x), nearestAt(t + x), nearestAt(t - y), nearestAt(t + y));
-  uvec4 covered = uvec4(notEqual(around, uvec4(kEmpty)));
-  uint nearest = min(min(around.x, around.y), min(around.z, around.w));
-  return word == kEmpty && covered.x + covered.y + covered.z + covered.w >= 3u ? nearest : word;
+  bool atEdge = any(equal(t, ivec2(0))) || any(equal(t, ivec2(push.microSize - 1u)));
+  uint covered = 0u, nearest = kEmpty;
+  for (int n = 0; n < 9; ++n) {
+    uint word = wordAt(t + ivec2(n % 3 - 1, n / 3 - 1));
+    covered += word != kEmpty ? 1u : 0u;
+    nearest = min(nearest, word);
+  }
+  bool hole = micro[i] == kEmpty && covered >= (atEdge ? 4u : 6u);
+  return hole ? nearest : micro[i];
+}
+
+// Holes between the splats of a surface close, from their rims inwards.
+void closeHoles() {
+  uint texels = push.microSize * push.microSize;
+  for (uint turn = 0u; turn < kHoleTurns; ++turn) {
+    for (uint i = gl_LocalInvocationIndex; i < texels; i += kGroup) clusterRun[i] = closed(i);
+    barrier();
+    for (uint i = gl_LocalInvocationIndex; i < texels; i += kGroup) micro[i] = clusterRun[i];
+    barrier();
+  }
 }
 
 // Radiance that texel `i` sees and 1, or 0 where it sees nothing.
 vec4 seen(Site s, uint i, vec3 dirW) {
-  uint word = covering(i);
+  uint word = micro[i];
   bool covered = word != kEmpty;
   uint entry = covered ? projected[kSelection == kEveryPoint ? i : word & kSampleMask] : 0u;
   vec4 radiance = texelFetch(pointRadiance, int(entry));
@@ -269,15 +293,15 @@ void project(Site s) {
   uint base = kExplored * push.clusterCount, samples = push.projections - base;
   explore(s, key);
   barrier();
-  if (gl_LocalInvocationIndex == 0u) {
-    float sum = 0.0;
-    for (uint i = 0u; i < kGroup; ++i) sum += sumOfLanes[i];
-    allocate(samples, push.clusterCount, push.clusterUsed, sum);
-  }
+  float sum = 0.0;
+  for (uint i = 0u; i < kGroup; ++i) sum += sumOfLanes[i];
+  if (!(sum > 0.0)) return;  // nothing is above the site
+  if (gl_LocalInvocationIndex == 0u) allocate(samples, push.clusterCount, push.clusterUsed, sum);
   barrier();
   findClusters(base, samples);
   exploit(s, key, base, samples);
   barrier();
+  if (kSplatSide == 0u) closeHoles();
 }
 
 void main() {
