@@ -12,7 +12,7 @@ namespace limn {
 namespace {
 
 /// Points at which bounces are gathered; the others interpolate.
-constexpr uint32_t kBouncePoints = 2048;
+constexpr uint32_t kBouncePoints = 1024;
 /// Points stay where they are when the picture's seed changes.
 constexpr uint32_t kPointSeed = 1;
 

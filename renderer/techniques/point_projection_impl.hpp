@@ -21,6 +21,9 @@ struct PointProjectionWork {
   uint64_t pixelsGathered = 0;
 };
 
+/// Points of every cluster that gathers at points project, the first ones.
+constexpr uint32_t kBounceSlots = 128;
+
 /// Values of the announced parameters.
 struct PointProjectionSettings {
   uint32_t points = 0, clusters = 0, projections = 0, microSize = 0, bounces = 0, relightSamples = 0, startGrid = 0,
@@ -68,7 +71,7 @@ class PointProjectionTechnique final : public Technique {
   void planLighting();
   void pushCoarsePicture();
   void pushRelight(SlotRange slots, uint32_t samples, WorkRate& rate);
-  void pushBounce(bool first, bool compose);
+  void pushBounce(bool first, uint32_t endSlot, bool compose);
   void pushSites(uint32_t from, uint32_t end);
   void pushGather(const char* name, Task::Begin select);
   void pushLevel(uint32_t stride);

@@ -79,7 +79,12 @@ void PointProjectionTechnique::pushCoarsePicture() {
 void PointProjectionTechnique::planLighting() {
   pushRelight({0, m_light.layout().clusterSize}, m_settings.relightSamples, m_relightRate);
   const uint32_t atPoints = m_settings.bounces - (m_needs.sharp ? 0 : 1);
-  for (uint32_t bounce = 0; bounce < atPoints; ++bounce) pushBounce(bounce == 0, bounce + 1 < m_settings.bounces);
+  const uint32_t size = m_light.layout().clusterSize;
+  for (uint32_t bounce = 0; bounce < atPoints; ++bounce) {
+    // Pixels project all points with all bounces but the last; earlier bounces reach only the points that the next one projects.
+    const bool seen = bounce + 2 >= m_settings.bounces;
+    pushBounce(bounce == 0, seen ? size : std::min(kBounceSlots, size), bounce + 1 < m_settings.bounces);
+  }
   m_tasks.push({"points lit", nullptr, [this](const TechniqueContext&) -> Result<uint32_t> {
                   m_lit = true;
                   return 0u;
@@ -93,11 +98,11 @@ void PointProjectionTechnique::pushRelight(SlotRange slots, uint32_t samples, Wo
                 }});
 }
 
-void PointProjectionTechnique::pushBounce(bool first, bool compose) {
+void PointProjectionTechnique::pushBounce(bool first, uint32_t endSlot, bool compose) {
   m_tasks.push({"bounce", &m_bounceRate, [this, first](const TechniqueContext& c) { return listBounceSites(c, first); },
                 [this](const TechniqueContext& c, uint32_t from, uint32_t count) { return gatherAtPoints(c, from, count); }, 32});
   m_tasks.push({"spread", &m_spreadRate,
-                [this](const TechniqueContext&) -> Result<uint32_t> { return m_light.layout().clusterSize - m_bounceSlots; },
+                [this, endSlot](const TechniqueContext&) -> Result<uint32_t> { return endSlot - std::min(m_bounceSlots, endSlot); },
                 [this, compose](const TechniqueContext& c, uint32_t from, uint32_t count) {
                   return spread(c, {m_bounceSlots + from, m_bounceSlots + from + count}, compose);
                 }});

@@ -9,7 +9,7 @@ namespace {
 constexpr uint32_t kWorkgroup = 64;  // of gather_sites.comp and point_projection_shade.comp
 
 /// Points projected at a site of a bounce: what they miss is averaged over many sites.
-constexpr uint32_t kBounceProjections = 4096;
+constexpr uint32_t kBounceProjections = 3072;
 
 uint32_t workgroups(uint32_t entries) { return (entries + kWorkgroup - 1) / kWorkgroup; }
 
@@ -50,6 +50,7 @@ Result<void> PointProjectionTechnique::gatherAtPoints(const TechniqueContext& co
   push.projections = kBounceProjections;  // whatever pixels project: points stay lit when that is changed
   m_work.bounceSites += count;
   push.round = 0;
+  push.clusterUsed = std::min(kBounceSlots, m_litSlots);
   const auto all = bounceBindings(context);
   return gpu::runNow(context.device, [&](vk::CommandRecorder& r) { m_gather.recordAtPoints(r, all, push); });
 }

@@ -42,6 +42,12 @@ Sampler makeSampler(uint pixel, uint sampleIndex, uint seed) {
   return Sampler(hashCombine(hash(pixel + 1u), seed), sampleIndex, 0u);
 }
 
+// Even and odd samples of the film draw from two sequences of their own: halves of one sequence err against each other, and
+// their difference would overstate the error of the mean.
+Sampler makeFilmSampler(uint pixel, uint sampleIndex, uint seed) {
+  return makeSampler(pixel, sampleIndex >> 1, (sampleIndex & 1u) == 0u ? seed : seed ^ 0x68bc21ebu);
+}
+
 float toUnit(uint x) { return float(x >> 8) * (1.0 / 16777216.0); }  // [0, 1)
 
 // The next two dimensions: a (0, 2)-sequence in the sample index, shuffled and scrambled for each pair.

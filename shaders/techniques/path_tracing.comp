@@ -33,7 +33,7 @@ struct Path {
 
 Path startPath(uint pixel, uint sampleIndex) {
   Path p;
-  p.sampler_ = makeSampler(pixel, sampleIndex, push.seed);
+  p.sampler_ = makeFilmSampler(pixel, sampleIndex, push.seed);
   vec2 corner = vec2(pixel % camera.width, pixel / camera.width);
   cameraRay(corner + next2D(p.sampler_), p.originR, p.dirR);
   p.throughput = vec3(1.0);

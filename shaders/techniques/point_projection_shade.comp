@@ -39,7 +39,7 @@ struct Walk {
 
 Walk startWalk(uint pixel) {
   Walk w;
-  w.sampler_ = makeSampler(pixel, push.sampleIndex, push.seed);
+  w.sampler_ = makeFilmSampler(pixel, push.sampleIndex, push.seed);
   vec2 offset = next2D(w.sampler_);
   w.pixel = vec2(pixel % camera.width, pixel / camera.width) + (push.sampleIndex == 0u ? vec2(0.5) : offset);
   cameraRay(w.pixel, w.originR, w.dirR);
