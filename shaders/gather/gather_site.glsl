@@ -57,7 +57,7 @@ Site makeSite(uint pixel) {
     s.alpha = max(surface.alpha, kSplatAlpha);
     s.f0 = s.glossy ? mix(f.dielectricF0, surface.baseColor, surface.metallic) : vec3(0.0);
     s.f90 = s.glossy ? mix(vec3(f.dielectricF90), vec3(1.0), surface.metallic) : vec3(0.0);
-    s.albedo = luminance(gatheredAlbedo(f));
+    s.albedo = s.glossy ? luminance(gatheredAlbedo(f)) * kInvPi : 1.0;  // alone, the lobe's weight does not matter
   }
   return s;
 }

@@ -96,7 +96,7 @@ void explore(Site s, uint key) {
       if (kUseSpecular) {
         float inverse = inversesqrt(v.d2), schlick;
         float glossy = glossyValue(s, vec3(v.local.xy, max(v.local.z, 0.0)) * inverse, schlick);
-        value = value * kInvPi + glossy * sqrt(v.d2) * luminance(s.f0 + (s.f90 - s.f0) * schlick);
+        value += s.glossy ? glossy * sqrt(v.d2) * luminance(s.f0 + (s.f90 - s.f0) * schlick) : 0.0;
       }
       if (kUseGlossySources) value *= glossyStrength(facing(point, v), -v.d * inversesqrt(v.d2));
       total += v.above ? max(value * solidAngle, 0.0) : 0.0;

@@ -25,6 +25,7 @@ struct Bsdf {
   float eta;              // ior far side / near side as the viewer sees it
   bool exactFresnel;      // transmissive materials need total internal reflection; opaque ones follow glTF's Schlick
   bool thin;
+  bool diffuse;           // false: the diffuse lobe is left to somebody else (lobe_split.glsl)
   LobeShares shares;
   vec3 woL;               // the viewer in the frame
 };
@@ -50,6 +51,7 @@ float underClearcoat(Bsdf f, vec3 woW) {
 Bsdf makeBsdf(Surface s, vec3 woW) {
   Bsdf f;
   f.s = s;
+  f.diffuse = true;
   makeFrame(s.normal, f.t, f.b);
   f.woL = toLocal(f, woW);
   f.thin = (s.flags & kMaterialThin) != 0u;
@@ -108,7 +110,7 @@ vec3 evaluateBsdf(Bsdf f, vec3 woW, vec3 wiW, out float pdf) {
     vec3 h = normalize(wo + wi);
     float cosH = clamp(dot(wo, h), 0.0, 1.0);
     float body = (1.0 - f.s.metallic) * (1.0 - f.s.transmission) * (1.0 - maxComponent(dielectricFresnel(f, cosH)));
-    value = f.shares.diffuse > 0.0 ? f.s.baseColor * (body * kInvPi * wi.z) : vec3(0.0);
+    value = f.diffuse ? f.s.baseColor * (body * kInvPi * wi.z) : vec3(0.0);
     pdf = f.shares.diffuse * wi.z * kInvPi;
     if (kUseSpecular && !isMirror(alpha) && f.shares.reflection > 0.0) {
       value += reflectionFresnel(f, cosH) * (ggxD(h, alpha) * ggxG2(wo, wi, alpha) / (4.0 * wo.z));

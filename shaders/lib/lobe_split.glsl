@@ -17,6 +17,7 @@ Bsdf roughPart(Bsdf f) {
 // Everything else, with shares that add to 1; all are 0 where nothing is sharp.
 Bsdf sharpPart(Bsdf f) {
   f.shares.diffuse = 0.0;
+  f.diffuse = false;
   if (!hasSharpBase(f)) f.shares.reflection = f.shares.transmission = 0.0;
   float sum = f.shares.reflection + f.shares.transmission + f.shares.clearcoat;
   float scale = sum > 0.0 ? 1.0 / sum : 0.0;

@@ -174,6 +174,12 @@ void addToFilm(uint pixel, FilmSample s, vec3 gathered) {
   lookedUp[pixel] = after;
 }
 
+// Nothing of a preview stays where the first sample is no good.
+void discard_(uint pixel) {
+  if (push.firstOfFilm != 0u) filmMean[pixel] = vec4(0.0);
+  atomicAdd(counters[kCounterDiscarded], 1u);
+}
+
 bool acceptable(vec3 radiance) { return isFinite(radiance) && all(greaterThanEqual(radiance, vec3(0.0))); }
 
 void main() {
@@ -183,7 +189,7 @@ void main() {
   Walk w = startWalk(pixel);
   while (advance(w)) {}
   if (acceptable(w.result.radiance) && acceptable(w.gathered)) addToFilm(pixel, w.result, w.gathered);
-  else atomicAdd(counters[kCounterDiscarded], 1u);
+  else discard_(pixel);
   uint before = atomicAdd(counters[kCounterRays], traceCount);
   if (before + traceCount < before) atomicAdd(counters[kCounterRays + 1u], 1u);
 }

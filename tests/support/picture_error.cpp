@@ -30,6 +30,9 @@ double meanQuotient(const std::vector<float>& x, const std::vector<float>& y, co
   return sum / double(r.size());
 }
 
+/// [pixel] Smaller tiles hold too few pixels on edges, the only ones with noise under a point light, to tell that noise.
+constexpr uint32_t kTile = 16;
+
 struct Sums {
   double difference = 0.0, variance = 0.0, scale = 0.0;
   double deviation() const {
@@ -52,13 +55,13 @@ double relMseOf(const FilmImage& picture, const PicturePair& reference, const st
 Deviation deviationOf(const PicturePair& pair, const PicturePair& reference, const std::string& layer) {
   const std::vector<float>*all[] = {&dataOf(pair.a, layer), &dataOf(pair.b, layer), &dataOf(reference.a, layer),
                                     &dataOf(reference.b, layer)};
-  const uint32_t width = pair.a.width, tilesX = (width + 7) / 8, tilesY = (pair.a.height + 7) / 8;
+  const uint32_t width = pair.a.width, tilesX = (width + kTile - 1) / kTile, tilesY = (pair.a.height + kTile - 1) / kTile;
   std::vector<Sums> tiles(size_t(tilesX) * tilesY);
   Sums whole;
   for (size_t i = 0; i < size_t(width) * pair.a.height; ++i) {
     double v[4];
     for (int k = 0; k < 4; ++k) v[k] = luminance(*all[k], i);
-    for (Sums* s : {&whole, &tiles[i / width / 8 * tilesX + i % width / 8]}) {
+    for (Sums* s : {&whole, &tiles[i / width / kTile * tilesX + i % width / kTile]}) {
       s->difference += 0.5 * (v[0] + v[1] - v[2] - v[3]);
       s->variance += 0.25 * ((v[0] - v[1]) * (v[0] - v[1]) + (v[2] - v[3]) * (v[2] - v[3]));
       s->scale += 0.5 * std::abs(v[2] + v[3]);

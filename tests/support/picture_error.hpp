@@ -18,7 +18,7 @@ double biasOf(const PicturePair& pair, const PicturePair& reference, const std::
 double relMseOf(const FilmImage& picture, const PicturePair& reference, const std::string& layer);
 
 /// How far the means of a layer lie apart, in standard errors of their difference: of the whole picture, and the largest of
-/// all tiles of 8x8 pixels.
+/// all tiles of 16x16 pixels.
 struct Deviation {
   double whole = 0.0, worstTile = 0.0;
 };

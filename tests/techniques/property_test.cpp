@@ -11,8 +11,6 @@
 namespace limn::test {
 namespace {
 
-constexpr uint32_t kSequences = 200;
-
 /// Seeded choices; the same seed gives the same sequence.
 class Dice {
  public:
@@ -73,7 +71,18 @@ Edit viewEdit(Dice& dice, const Scene& scene) {
   return e;
 }
 
-Edit techniqueEdit(Dice& dice) {
+Edit pointProjectionEdit(Dice& dice) {
+  SetTechnique e;
+  if (dice.chance(2)) e.parameters.push_back({"bounces", dice.below(4)});
+  if (dice.chance(2)) e.parameters.push_back({"projections", 512 + dice.below(1024)});
+  if (dice.chance(2)) e.parameters.push_back({"microSize", 8 + dice.below(25)});
+  if (dice.chance(4)) e.parameters.push_back({"clusters", dice.chance(2) ? 64 : 256});
+  if (dice.chance(4)) e.parameters.push_back({"startGrid", 4u << dice.below(3)});
+  if (dice.chance(4)) e.parameters.push_back({"filterSize", 1 + 2 * dice.below(4)});
+  return e;
+}
+
+Edit pathTracingEdit(Dice& dice) {
   SetTechnique e;
   if (dice.chance(2)) e.parameters.push_back({"maxBounces", dice.below(6)});
   if (dice.chance(2)) e.parameters.push_back({"rouletteStart", 1 + dice.below(4)});
@@ -83,7 +92,7 @@ Edit techniqueEdit(Dice& dice) {
   return e;
 }
 
-Edit anyEdit(Dice& dice, const Scene& scene) {
+Edit anyEdit(Dice& dice, const Scene& scene, bool pathTracing) {
   switch (dice.below(12)) {
     case 0: case 1: case 2: return materialEdit(dice, scene);
     case 3: case 4: return lightEdit(dice, scene);
@@ -92,7 +101,7 @@ Edit anyEdit(Dice& dice, const Scene& scene) {
     case 8: return viewEdit(dice, scene);
     case 9: return SetResolve{dice.real(-3, 3), ToneMap(dice.below(4)), ResolveView(dice.below(8))};
     case 10: return SetImageSize{16 + 4 * dice.below(9), 16 + 4 * dice.below(9)};
-    default: return techniqueEdit(dice);
+    default: return pathTracing ? pathTracingEdit(dice) : pointProjectionEdit(dice);
   }
 }
 
@@ -114,8 +123,10 @@ std::shared_ptr<const SceneSummary> describe(TestSession& session) {
   return replies.empty() ? nullptr : replies.back().scene;
 }
 
-SessionConfig smallQuanta() {
+SessionConfig smallQuanta(const std::string& technique) {
   SessionConfig config = smallPicture(32, 24);
+  config.technique = technique;
+  if (technique == "point-projection") config.parameters = {{"points", 16384}, {"clusters", 64}, {"projections", 512}, {"bounces", 2}};
   config.quantumSeconds = 0.0005;  // several to a pass
   config.firstFrameSeconds = 0.001;
   return config;
@@ -124,42 +135,44 @@ SessionConfig smallQuanta() {
 /// One loaded session for each pipeline variant, so that every reference is rendered by the variant cut to its scene.
 class References {
  public:
+  explicit References(std::string technique) : m_technique(std::move(technique)) {}
   uint64_t hash(const Scene& scene, const SceneSummary& model, uint32_t passes) {
     auto& session = m_sessions[gpu::needsConstants(sceneNeeds(scene))];
-    if (!session) session = std::make_unique<TestSession>(scene, smallQuanta());
+    if (!session) session = std::make_unique<TestSession>(scene, smallQuanta(m_technique));
     loadInto(*session, scene, model);
     session->run(passes);
     return session->hash();
   }
 
  private:
+  std::string m_technique;
   std::map<std::vector<uint32_t>, std::unique_ptr<TestSession>> m_sessions;
 };
 
 /// Random batches with partial steps between them.
-void playSequence(TestSession& session, Dice& dice) {
+void playSequence(TestSession& session, Dice& dice, bool pathTracing) {
   const uint32_t batches = 1 + dice.below(6);
   for (uint32_t i = 0; i < batches; ++i) {
     std::vector<Edit> edits;
     const uint32_t count = 1 + dice.below(3);
-    while (edits.size() < count) edits.push_back(anyEdit(dice, session.scene()));
+    while (edits.size() < count) edits.push_back(anyEdit(dice, session.scene(), pathTracing));
     (void)session.edit(std::move(edits));
     session.steps(int(dice.below(5)));
   }
 }
 
-TEST(AnyEdits, GiveThePictureOfAFreshLoad) {
+void expectPicturesOfFreshLoads(const std::string& technique, uint32_t sequences, uint32_t mostPasses) {
   const Scene starts[] = {richScene().scene, plainScene()};
-  TestSession edited[] = {{starts[0], smallQuanta()}, {starts[1], smallQuanta()}};
+  TestSession edited[] = {{starts[0], smallQuanta(technique)}, {starts[1], smallQuanta(technique)}};
   const auto defaults = describe(edited[0]);
-  References references;
-  for (uint32_t seed = 0; seed < kSequences; ++seed) {
+  References references(technique);
+  for (uint32_t seed = 0; seed < sequences; ++seed) {
     Dice dice(seed);
     TestSession& session = edited[seed % 2];
     loadInto(session, starts[seed % 2], *defaults);
     session.steps(int(dice.below(4)));
-    playSequence(session, dice);
-    const uint32_t passes = 1 + dice.below(6);
+    playSequence(session, dice, technique == "path-tracing");
+    const uint32_t passes = 1 + dice.below(mostPasses);
     session.run(0);
     session.published.clear();
     session.run(passes);
@@ -168,7 +181,7 @@ TEST(AnyEdits, GiveThePictureOfAFreshLoad) {
     const auto summary = describe(session);
     EXPECT_EQ(hash, references.hash(session.scene(), *summary, passes)) << "seed " << seed << ", " << passes << " passes";
     if (seed % 20 < 2) {
-      SessionConfig config = smallQuanta();
+      SessionConfig config = smallQuanta(technique);
       config.width = summary->width;
       config.height = summary->height;
       config.parameters = summary->parameters;
@@ -176,6 +189,9 @@ TEST(AnyEdits, GiveThePictureOfAFreshLoad) {
     }
   }
 }
+
+TEST(AnyEdits, GiveThePictureOfAFreshLoad) { expectPicturesOfFreshLoads("path-tracing", 200, 6); }
+TEST(AnyEdits, GivePointProjectionsPictureOfAFreshLoad) { expectPicturesOfFreshLoads("point-projection", 24, 7); }
 
 }  // namespace
 }  // namespace limn::test
