@@ -4,9 +4,9 @@
 
 #include <cstdlib>
 
-#include "renderer/base/clock.hpp"
 #include "renderer/gpu/pass.hpp"
 #include "tests/gpu/bvh_scenes.hpp"
+#include "tests/support/processor_time.hpp"
 #include "tests/support/shared_device.hpp"
 
 namespace limn::test {
@@ -23,9 +23,9 @@ vk::Buffer raysOf(size_t count) {
 }
 
 double secondsOf(const std::function<void(vk::CommandRecorder&)>& record) {
-  const double begin = nowSeconds();
+  const double begin = processorSeconds();
   must(gpu::runNow(SharedDevice::get(), record));
-  return nowSeconds() - begin;
+  return processorSeconds() - begin;
 }
 
 TEST(WarmUp, OneIsEnoughForTablesOfEverySize) {

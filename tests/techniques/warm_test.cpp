@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "tests/support/processor_time.hpp"
 #include "tests/support/rich_scene.hpp"
 #include "tests/support/session_fixture.hpp"
 
@@ -42,9 +43,9 @@ class Warm : public testing::Test {
     SessionConfig config = smallPicture();
     config.quantumSeconds = 1e-3;
     config.parameters = {{"maxSamples", 32.0}};
-    const double begin = nowSeconds();
+    const double begin = processorSeconds();
     m_session = std::make_unique<TestSession>(sceneOf(1000), config);
-    m_warmUp = nowSeconds() - begin;
+    m_warmUp = processorSeconds() - begin;
     m_session->watch(true);
   }
   TestSession& session() { return *m_session; }
@@ -52,9 +53,9 @@ class Warm : public testing::Test {
   void expectNoCompilation(const std::string& after) {
     double slowest = 0.0;
     for (bool more = true; more;) {
-      const double begin = nowSeconds();
+      const double begin = processorSeconds();
       more = session().step();
-      slowest = std::max(slowest, nowSeconds() - begin);
+      slowest = std::max(slowest, processorSeconds() - begin);
     }
     EXPECT_LT(slowest, m_warmUp / 12) << after << "; warming up took " << m_warmUp << " s";
   }
