@@ -106,6 +106,38 @@ def ajar_door():
     return scene.glb()
 
 
+def torchiere():
+    """A room lit by bounces alone: a floor lamp behind the viewer shines at the ceiling, and at nothing else."""
+    scene = Builder("torchiere")
+    white = scene.add_material(materials.lambert("White", (0.75, 0.74, 0.70)))
+    wood = scene.add_material(materials.lambert("Floor", (0.36, 0.22, 0.12)))
+    blue = scene.add_material(materials.lambert("Blue", (0.18, 0.28, 0.48)))
+    room(scene, (-2.0, 0.0, -2.0), (2.0, 2.6, 3.0), (white, white, wood, white, white, blue))
+    steel = scene.add_material(materials.lambert("Steel", (0.5, 0.5, 0.5)))
+    side, depth, at = 0.36, 0.2, (1.3, 1.1, 2.3)
+    x, y, z = at
+    walls = [
+        grid((x, y, z), (side, 0.0, 0.0), (0.0, depth, 0.0)),
+        grid((x, y, z + side), (side, 0.0, 0.0), (0.0, depth, 0.0)),
+        grid((x, y, z), (0.0, 0.0, side), (0.0, depth, 0.0)),
+        grid((x + side, y, z), (0.0, 0.0, side), (0.0, depth, 0.0)),
+        grid((x, y, z), (side, 0.0, 0.0), (0.0, 0.0, side)),
+    ]
+    scene.add_object("Shade", merged(walls), steel)
+    pole = shapes.cylinder(0.015, y, 16)
+    scene.add_object("Pole", pole, steel, translation=(x + 0.5 * side, 0.0, z + 0.5 * side))
+    lamp = scene.add_material(materials.emitter("Lamp", (300.0, 277.0, 237.0)))
+    scene.add_object("Lamp", grid((x + 0.03, y + 0.02, z + 0.33), (0.3, 0.0, 0.0), (0.0, 0.0, -0.3)), lamp)
+    scene.add_object("Table", coffee_table(), wood, translation=(0.1, 0.0, -0.7))
+    brass = scene.add_material(materials.metal("Brushed brass", (0.89, 0.70, 0.35), 0.55))
+    knot = shapes.torus_knot(2, 3, 0.11, 0.05, 0.03, 160, 16)
+    scene.add_object("Knot", knot, brass, translation=(0.3, 0.50, -0.7))
+    scene.add_object("Ball", shapes.sphere(0.13, 48, 24), blue, translation=(-0.25, 0.55, -0.65))
+    scene.add_object("Chair", chair(), blue, translation=(1.1, 0.0, -0.9), rotation=vec.quaternion(vec.Y, -60.0))
+    scene.add_camera("Camera", (0.9, 1.45, 2.2), (-0.25, 0.55, -0.6), 45.0)
+    return scene.glb()
+
+
 def _column(height=3.2, segments=32):
     """A base, a shaft with entasis and a capital."""
     shaft = [(0.20 - 0.035 * (k / 12.0) ** 1.6, 0.22 + (height - 0.5) * k / 12.0) for k in range(13)]
@@ -199,6 +231,7 @@ def many_lights():
 SCENES = {
     "veach-mis": veach_mis,
     "ajar-door": ajar_door,
+    "torchiere": torchiere,
     "colonnade": colonnade,
     "thin-furniture": thin_furniture,
     "many-lights": many_lights,
