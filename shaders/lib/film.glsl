@@ -2,6 +2,7 @@
 #ifndef LIMN_FILM_GLSL
 #define LIMN_FILM_GLSL
 #include "shaders/shared/bindings.h"
+#include "shaders/lib/film_sample.glsl"
 #include "shaders/shared/film_shared.h"
 
 layout(binding = BINDING_FILM_MEAN, scalar) buffer FilmMean { vec4 filmMean[]; };       // radiance, count
@@ -9,15 +10,6 @@ layout(binding = BINDING_FILM_HALF, scalar) buffer FilmHalf { vec4 filmHalf[]; }
 layout(binding = BINDING_FILM_DIRECT, scalar) buffer FilmDirect { vec4 filmDirect[]; }; // radiance without indirect light, even count
 layout(binding = BINDING_FILM_ALBEDO, scalar) buffer FilmAlbedo { vec4 filmAlbedo[]; }; // albedo, depth [m]
 layout(binding = BINDING_FILM_NORMAL, scalar) buffer FilmNormal { vec4 filmNormal[]; }; // shading normal, hit share
-
-struct FilmSample {
-  vec3 radiance;
-  vec3 direct;
-  vec3 albedo;
-  vec3 normal;
-  float depth;  // [m], 0 where the ray left the scene
-  float hit;    // 1 where it did not
-};
 
 struct FilmPixel { vec4 mean, half_, direct, albedo, normal; };
 

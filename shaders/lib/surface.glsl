@@ -111,18 +111,43 @@ void applyTextures(inout Surface s, inout float roughness, inout float clearcoat
   }
 }
 
-Surface makeSurface(uint triangle, vec2 barycentrics, vec3 viewDir) {
-  uvec4 t = texelFetch(triangles, int(triangle));
-  vec3 p0 = texelFetch(positions, int(t.x)).xyz, p1 = texelFetch(positions, int(t.y)).xyz, p2 = texelFetch(positions, int(t.z)).xyz;
-  vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
-  Surface s;
-  s.posR = p0 * weights.x + p1 * weights.y + p2 * weights.z;
-  s.extent = max(maxComponent(abs(p0)), max(maxComponent(abs(p1)), maxComponent(abs(p2))));
+// A place on a triangle, before any material.
+struct Facet {
+  vec3 posR;
+  float extent;    // [m] largest coordinate of the corners, for offsetOrigin
+  vec3 normal;     // unit, to the side that the winding calls front
+  bool frontFace;  // the viewer sees that side
+};
+
+Facet facetOf(uvec3 corner, vec3 weights, vec3 viewDir) {
+  vec3 p0 = texelFetch(positions, int(corner.x)).xyz, p1 = texelFetch(positions, int(corner.y)).xyz,
+       p2 = texelFetch(positions, int(corner.z)).xyz;
+  // Kept off the edges by about what offsetOrigin() keeps off the plane: where walls meet, a ray that leaves one of them would
+  // else start behind the other.
+  const float kOffEdges = 1.0 / 524288.0;
+  weights = mix(weights, vec3(1.0 / 3.0), kOffEdges);
+  Facet f;
+  f.posR = p0 * weights.x + p1 * weights.y + p2 * weights.z;
+  f.extent = max(maxComponent(abs(p0)), max(maxComponent(abs(p1)), maxComponent(abs(p2))));
   vec3 edge1 = p1 - p0, edge2 = p2 - p0;
   // Edges are scaled first: the cross product of tiny ones would underflow.
   float scale = max(maxComponent(abs(edge1)), maxComponent(abs(edge2)));
-  s.geometricNormal = normalize(cross(edge1 / scale, edge2 / scale));
-  s.frontFace = dot(s.geometricNormal, viewDir) >= 0.0;
+  f.normal = normalize(cross(edge1 / scale, edge2 / scale));
+  f.frontFace = dot(f.normal, viewDir) >= 0.0;
+  return f;
+}
+
+vec3 cornerWeights(vec2 barycentrics) { return vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics); }
+
+Surface makeSurface(uint triangle, vec2 barycentrics, vec3 viewDir) {
+  uvec4 t = texelFetch(triangles, int(triangle));
+  vec3 weights = cornerWeights(barycentrics);
+  Facet facet = facetOf(t.xyz, weights, viewDir);
+  Surface s;
+  s.posR = facet.posR;
+  s.extent = facet.extent;
+  s.geometricNormal = facet.normal;
+  s.frontFace = facet.frontFace;
 
   s.material = t.w;
   s.flags = materials[t.w].flags;

@@ -7,128 +7,20 @@
 #include "shaders/shared/bvh_shared.h"
 #include "shaders/lib/scene_bindings.glsl"
 #include "shaders/lib/film.glsl"
-#include "shaders/lib/bsdf.glsl"
-#include "shaders/lib/lights.glsl"
 #include "shaders/lib/camera.glsl"
-#include "shaders/lib/alpha.glsl"
-#define LIMN_ALPHA
-#define LIMN_ALPHA_ENABLED kUseAlpha
-#include "shaders/lib/shadow.glsl"
+#include "shaders/lib/path.glsl"
 
 layout(local_size_x = 64) in;
 layout(binding = BINDING_PIXEL_LIST, scalar) readonly buffer PixelList { uint pixelList[]; };
 layout(binding = BINDING_COUNTERS, scalar) buffer Counters { uint counters[]; };
 layout(push_constant, scalar) uniform Push { PathTracingPush push; };
 
-struct Path {
-  Sampler sampler_;
-  vec3 originR, dirR;
-  vec3 throughput;
-  float etaScale;      // undoes the radiance scaling of refraction for Russian roulette
-  float bsdfPdf;       // of dirR; 0 after a mirror or from the camera
-  vec3 absorption;     // [1/m] of the medium the ray is in
-  uint bounce;         // surfaces scattered at, mirrors included
-  FilmSample result;
-};
-
 Path startPath(uint pixel, uint sampleIndex) {
-  Path p;
-  p.sampler_ = makeFilmSampler(pixel, sampleIndex, push.seed);
+  Path p = newPath(makeFilmSampler(pixel, sampleIndex, push.seed), push.maxBounces, push.rouletteStart);
   vec2 corner = vec2(pixel % camera.width, pixel / camera.width);
   cameraRay(corner + next2D(p.sampler_), p.originR, p.dirR);
-  p.throughput = vec3(1.0);
-  p.etaScale = 1.0;
-  p.bsdfPdf = 0.0;
-  p.absorption = vec3(0.0);
-  p.bounce = 0u;
-  p.result = FilmSample(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0);
   return p;
 }
-
-// Light that reaches the eye after at most one scattering is direct.
-void addRadiance(inout Path p, vec3 radiance, uint scatterings) {
-  p.result.radiance += radiance;
-  if (scatterings <= 1u) p.result.direct += radiance;
-}
-
-void addEnvironment(inout Path p) {
-  if (!kUseEnvironment || sceneInfo.environmentLight == kNoIndex) return;
-  float weight = 1.0;
-  if (p.bsdfPdf > 0.0)
-    weight = powerHeuristic(p.bsdfPdf, lights[sceneInfo.environmentLight].probability * environmentPdf(p.dirR));
-  addRadiance(p, p.throughput * environmentRadiance(p.dirR) * weight, p.bounce);
-}
-
-void addEmission(inout Path p, Surface s, Hit hit) {
-  float weight = 1.0;
-  uint index = texelFetch(triangleLights, int(hit.triangle)).x;
-  if (p.bsdfPdf > 0.0 && index != kNoIndex)
-    weight = powerHeuristic(p.bsdfPdf, triangleLightPdf(lights[index], hit.t, abs(dot(s.geometricNormal, p.dirR))));
-  addRadiance(p, p.throughput * s.emission * weight, p.bounce);
-}
-
-void addLights(inout Path p, Bsdf bsdf, vec3 woW) {
-  vec2 choice = next2D(p.sampler_), u = next2D(p.sampler_);
-  if (bsdf.shares.diffuse <= 0.0 && isMirror(bsdf.s.alpha) && bsdf.s.clearcoat <= 0.0) return;
-  LightSample light = sampleLight(bsdf.s.posR, choice, u);
-  if (!(maxComponent(light.radiance) > 0.0)) return;
-  float bsdfPdf;
-  vec3 value = evaluateBsdf(bsdf, woW, light.dirW, bsdfPdf);
-  if (!(maxComponent(value) > 0.0)) return;
-  if (occluded(bsdf.s, light, hashCombine(p.sampler_.key, p.sampler_.index ^ (p.bounce << 24)))) return;
-  float weight = light.pdf > 0.0 ? powerHeuristic(light.pdf, bsdfPdf) : 1.0;
-  addRadiance(p, p.throughput * value * light.radiance * transmittance(p.absorption, bsdf, light) * weight, p.bounce + 1u);
-}
-
-// Moves the path by one ray. False when it ended.
-bool advance(inout Path p) {
-  Hit hit;
-  uint alphaState = hashCombine(p.sampler_.key ^ 0x51ed270bu, p.sampler_.index ^ (p.bounce << 24));
-  ++traceCount;
-  if (!traceClosest(p.originR, p.dirR, kInfinity, alphaState, hit)) {
-    addEnvironment(p);
-    return false;
-  }
-  vec3 woW = -p.dirR;
-  Surface s = makeSurface(hit.triangle, hit.barycentrics, woW);
-  if (kUseTransmission && p.absorption != vec3(0.0)) p.throughput *= exp(-p.absorption * hit.t);
-  if (p.bounce == 0u) {
-    p.result.albedo = s.baseColor;
-    p.result.normal = s.normal;
-    p.result.depth = hit.t;
-    p.result.hit = 1.0;
-  }
-  if ((s.flags & kMaterialUnlit) != 0u) {
-    addRadiance(p, p.throughput * s.baseColor, p.bounce);
-    return false;
-  }
-  if (kUseTriangleLights && (s.flags & kMaterialEmissive) != 0u) addEmission(p, s, hit);
-  if (p.bounce > push.maxBounces) return false;
-
-  Bsdf bsdf = makeBsdf(s, woW);
-  addLights(p, bsdf, woW);
-  vec2 lobe = next2D(p.sampler_), u = next2D(p.sampler_);
-  BsdfSample next = sampleBsdf(bsdf, woW, lobe.x, u);
-  if (!(maxComponent(next.weight) > 0.0)) return false;
-
-  p.throughput *= next.weight;
-  p.bsdfPdf = next.mirror ? 0.0 : next.pdf;
-  if (kUseTransmission && next.transmitted && !bsdf.thin) {
-    p.absorption = s.frontFace ? materials[s.material].absorption : vec3(0.0);
-    p.etaScale *= bsdf.eta * bsdf.eta;
-  }
-  p.originR = offsetOrigin(s.posR, s.geometricNormal, next.dirW, s.extent);
-  p.dirR = next.dirW;
-  ++p.bounce;
-  if (p.bounce >= push.rouletteStart) {
-    float survive = min(0.95, maxComponent(p.throughput) * p.etaScale);
-    if (lobe.y >= survive) return false;
-    p.throughput /= survive;
-  }
-  return true;
-}
-
-bool acceptable(FilmSample s) { return isFinite(s.radiance) && all(greaterThanEqual(s.radiance, vec3(0.0))); }
 
 // Software devices give each of their threads one run of workgroups; dealt out in turn, cheap and dear parts of the picture
 // share the threads evenly. The number of workgroups is a multiple of kDealt.
