@@ -12,8 +12,6 @@
 namespace limn {
 namespace {
 
-constexpr double kReach =
-    1.8;  // radius over the side of a point's square of surface: about 10 points are in reach on a plane
 constexpr double kMinReachShare = 1e-5;  // of the scene's size: cells stay few enough to count them in integers
 
 glm::ivec3 cellOf(const glm::vec3& posR, const shared::PointGridInfo& info) {
@@ -36,7 +34,7 @@ shared::PointGridInfo layOut(const PointSubset& subset, size_t count) {
   });
   const double size = glm::length(glm::dvec3(high) - glm::dvec3(low));
   const double spacing = std::sqrt(subset.areaPerPoint * double(subset.points.size()) / double(count));
-  const double radius = std::max(kReach * spacing, kMinReachShare * size);
+  const double radius = std::max(subset.reach * spacing, kMinReachShare * size);
   shared::PointGridInfo info{};
   info.originR = low;
   info.radius = radius > 0.0 ? float(radius) : 1.0f;
@@ -105,8 +103,8 @@ PointGridData buildPointGrid(const PointSubset& subset) {
   return grid;
 }
 
-Result<void> PointGrid::update(vk::Device& device, const SurfacePoints& points, uint32_t slots) {
-  PointGridData grid = buildPointGrid({points.points(), points.clusterSize(), slots, points.areaPerPoint()});
+Result<void> PointGrid::update(vk::Device& device, const SurfacePoints& points, uint32_t slots, double reach) {
+  PointGridData grid = buildPointGrid({points.points(), points.clusterSize(), slots, points.areaPerPoint(), reach});
   m_radius = grid.info.radius;
   std::vector<uint32_t> head(shared::kPointGridInfoWords);
   std::memcpy(head.data(), &grid.info, sizeof(grid.info));

@@ -10,11 +10,15 @@
 
 namespace limn {
 
+/// Reaches of a grid's points: means over about 10 points on a plane; the nearest point alone.
+constexpr double kSmoothReach = 1.8, kNearestReach = 1.1;
+
 /// Which points a grid holds: the first `slots` of every cluster.
 struct PointSubset {
   std::span<const shared::SurfacePoint> points;  ///< all, cluster by cluster
   uint32_t clusterSize = 0, slots = 0;
   double areaPerPoint = 0.0;  ///< [m²] of the whole set
+  double reach = kSmoothReach;  ///< how far points reach over the side of a point's square of surface
 };
 
 /// A uniform hashed grid over surface points, as the device reads it.
@@ -36,8 +40,8 @@ float pointWeight(const glm::vec3& apart, const glm::vec3& normal, float cosine,
 class PointGrid {
  public:
   /// Builds the grid over the first `slots` points of every cluster; 0 < slots <= points.clusterSize(), unless there
-  /// are no points. Errors: "limit", "out-of-memory", "device-lost".
-  Result<void> update(vk::Device& device, const SurfacePoints& points, uint32_t slots);
+  /// are no points. `reach` as in PointSubset. Errors: "limit", "out-of-memory", "device-lost".
+  Result<void> update(vk::Device& device, const SurfacePoints& points, uint32_t slots, double reach = kSmoothReach);
   /// POINT_GRID and POINT_GRID_ENTRIES, both texel. After a successful update. Look-ups also read POINTS and
   /// POINT_LIGHT.
   std::vector<vk::Binding> bindings() const;

@@ -70,6 +70,7 @@ bool hasGlossySources(const Scene& scene) {
 
 PointLightCache::PointLightCache()
     : m_relight("relight_points", sizeof(shared::RelightPush), &constants),
+      m_paths("trace_points", sizeof(shared::TracePointsPush), &constants),
       m_compose("compose_points", sizeof(shared::ComposePush), &constants) {}
 
 Result<void> PointLightCache::resize(vk::Device& device, PointLayout layout, bool lobes) {
@@ -120,6 +121,7 @@ std::vector<vk::Binding> PointLightCache::composeBindings(const PointLightContex
 Result<void> PointLightCache::prepare(const PointLightContext& context, const SceneNeeds& needs, bool mayCompile) {
   LIMN_CHECK(bool(m_light));
   if (auto done = m_relight.prepare(context.device, relightBindings(context), needs, mayCompile); !done) return done;
+  if (auto done = m_paths.prepare(context.device, relightBindings(context), needs, mayCompile); !done) return done;
   return m_compose.prepare(context.device, composeBindings(context), needs, mayCompile);
 }
 
@@ -164,6 +166,19 @@ void PointLightCache::recordRelight(vk::CommandRecorder& recorder, const PointLi
                                    m_lobesKept,
                                    owners};
     m_relight->record(recorder, all, push, workgroups(slotCount * m_layout.clusterCount));
+    recorder.barrier();
+    done += samples;
+  }
+}
+
+void PointLightCache::recordPaths(vk::CommandRecorder& recorder, const PointLightContext& context, const PathWork& work) const {
+  const uint32_t slotCount = slotsOf(work.slots);
+  const auto all = relightBindings(context);
+  for (uint32_t done = 0; done < work.samples && slotCount > 0;) {
+    const uint32_t samples = std::min(work.samples - done, shared::kPathsMost);
+    const shared::TracePointsPush push{work.slots.first, slotCount, m_layout.clusterCount, m_layout.clusterSize,
+                                       samples, work.samplesBefore + done, work.seed, work.bounces};
+    m_paths->record(recorder, all, push, workgroups(2 * slotCount * m_layout.clusterCount));
     recorder.barrier();
     done += samples;
   }

@@ -40,6 +40,15 @@ struct RelightWork {
   uint32_t seed = 0;
 };
 
+/// One share of the paths of points.
+struct PathWork {
+  SlotRange slots;             ///< of the points that are in the grid of recordSpread()
+  uint32_t samples = 1;        ///< taken of both sides of every point now
+  uint32_t samplesBefore = 0;  ///< taken of the same points since the light changed; 0 replaces what they hold
+  uint32_t bounces = 1;        ///< that reach the points, at least 1
+  uint32_t seed = 0;
+};
+
 /// The light at surface points: irradiance of both sides, kept free of the surface's colours, the diffuse radiance that
 /// leaves, and up to 4 glossy lobes where the scene has glossy sources. [IPP §4] Every point is lit by rays; what comes
 /// out depends on scene, seed and numbers of samples alone. A sample that is not finite counts as one without light.
@@ -65,6 +74,9 @@ class PointLightCache {
 
   /// Takes direct-light samples of the points and adds them to their means; indirect light stays. Ends with a barrier.
   void recordRelight(vk::CommandRecorder& recorder, const PointLightContext& context, const RelightWork& work) const;
+
+  /// Follows paths from the points and adds what they find to the means of indirect light. Ends with a barrier.
+  void recordPaths(vk::CommandRecorder& recorder, const PointLightContext& context, const PathWork& work) const;
 
   /// Writes POINT_RADIANCE of the slots from POINT_LIGHT and the materials. Ends with a barrier.
   void recordCompose(vk::CommandRecorder& recorder, const PointLightContext& context, SlotRange slots) const;
@@ -96,7 +108,7 @@ class PointLightCache {
   PointLayout m_layout;
   bool m_lobesKept = false;
   vk::Buffer m_light, m_radiance, m_lobes, m_counters;
-  gpu::TailoredPass m_relight, m_compose;
+  gpu::TailoredPass m_relight, m_paths, m_compose;
   gpu::Pass m_spread;
 };
 

@@ -44,8 +44,8 @@ std::vector<uint32_t> gatherConstants(const SceneNeeds& needs, bool lobes, const
 }
 
 PointProjection::PointProjection()
-    : m_pixels("gather_pixels", sizeof(shared::PointProjectionPush), &tailoredConstants),
-      m_points("gather_points", sizeof(shared::PointProjectionPush), &tailoredConstants) {}
+    : m_pixels("gather_pixels_corrected", sizeof(shared::PointProjectionPush), &tailoredConstants),
+      m_points("gather_points_corrected", sizeof(shared::PointProjectionPush), &tailoredConstants) {}
 
 Result<void> PointProjection::prepare(vk::Device& device, const std::vector<vk::Binding>& atPixels,
                                       const std::vector<vk::Binding>& atPoints, const SceneNeeds& needs, bool lobes,

@@ -11,8 +11,6 @@
 namespace limn {
 namespace {
 
-/// Points at which bounces are gathered; the others interpolate.
-constexpr uint32_t kBouncePoints = 1024;
 /// Points stay where they are when the picture's seed changes.
 constexpr uint32_t kPointSeed = 1;
 
@@ -51,9 +49,21 @@ void PointProjectionTechnique::setParameter(const std::string& name, double valu
   else if (name == "threshold") s.threshold = float(value);
   else if (name == "lambda") s.lambda = float(value);
   else if (name == "filterSize") s.filterSize = whole | 1u;
+  else if (name == "correctionRays") s.correctionRays = whole;
+  else if (name == "bouncePoints") s.bouncePoints = whole;
+  else if (name == "paths") s.paths = whole;
   else if (name == "maxSamples") s.maxSamples = whole;
-  if (s.points != before.points || s.clusters != before.clusters) m_pointsKnown = m_lit = false;
-  if (s.microSize != before.microSize || s.bounces != before.bounces || s.relightSamples != before.relightSamples) m_lit = false;
+  const bool points = s.points != before.points || s.clusters != before.clusters || s.bouncePoints != before.bouncePoints;
+  if (points) m_pointsKnown = false;
+  if (points || s.microSize != before.microSize || s.bounces != before.bounces || s.paths != before.paths ||
+      s.relightSamples != before.relightSamples)
+    forgetLight();
+}
+
+void PointProjectionTechnique::forgetLight() {
+  m_lit = m_previewLit = false;
+  m_litSlots = 0;
+  m_lighting.clear();
 }
 
 Result<void> PointProjectionTechnique::makeBuffers(const TechniqueContext& context) {
@@ -96,14 +106,15 @@ Result<void> PointProjectionTechnique::updatePoints(const TechniqueContext& cont
   m_work.pointUpdates += updated->changed;
   m_lightingRevision = context.lightingRevision;
   m_pointsKnown = true;
-  m_lit = false;
+  forgetLight();
   const PointLayout layout = m_points.count() > 0 ? PointLayout{m_points.clusterCount(), m_points.clusterSize()} : PointLayout{1, 1};
   if (auto made = m_light.resize(context.device, layout, hasGlossySources(context.description)); !made) return made;
   const uint32_t sides = 2 * layout.clusterCount;
-  m_bounceSlots = std::min(std::max(1u, kBouncePoints / layout.clusterCount), layout.clusterSize);
+  m_bounceSlots = std::min(std::max(1u, m_settings.bouncePoints / layout.clusterCount), layout.clusterSize);
   auto list = makeBuffer(context.device, "pointProjection.bounceList", size_t(sides) * m_bounceSlots * sizeof(uint32_t));
   if (!list) return list.error();
   m_bounceList = list.take();
+  if (auto done = m_nearestGrid.update(context.device, m_points, std::min(kBounceSlots, m_points.clusterSize()), kNearestReach); !done) return done;
   return m_pointGrid.update(context.device, m_points, std::min(m_bounceSlots, m_points.clusterSize()));
 }
 
@@ -120,13 +131,18 @@ std::vector<vk::Binding> PointProjectionTechnique::siteBindings(const TechniqueC
   return gpu::joined(sceneBindings(context, m_order), {vk::storage(BINDING_G_BUFFER, m_siteBuffer)});
 }
 
+std::vector<vk::Binding> PointProjectionTechnique::pointBindings(const TechniqueContext& context, const vk::Buffer& list) const {
+  auto all = gpu::joined(gpu::joined(sceneBindings(context, list), m_points.bindings()), m_light.bindings());
+  return gpu::joined(std::move(all), {vk::storage(BINDING_COUNTERS, m_counters)});
+}
+
 std::vector<vk::Binding> PointProjectionTechnique::gatherBindings(const TechniqueContext& context) const {
-  auto all = gpu::joined(gpu::joined(sceneBindings(context, m_list), m_points.bindings()), m_light.bindings());
+  auto all = gpu::joined(pointBindings(context, m_list), m_nearestGrid.bindings());
   return gpu::joined(std::move(all), {vk::storage(BINDING_G_BUFFER, m_siteBuffer), vk::storage(BINDING_INDIRECT, m_indirect)});
 }
 
 std::vector<vk::Binding> PointProjectionTechnique::bounceBindings(const TechniqueContext& context) const {
-  return gpu::joined(gpu::joined(sceneBindings(context, m_bounceList), m_points.bindings()), m_light.bindings());
+  return gpu::joined(pointBindings(context, m_bounceList), m_nearestGrid.bindings());
 }
 
 std::vector<vk::Binding> PointProjectionTechnique::shadeBindings(const TechniqueContext& context) const {
@@ -159,30 +175,37 @@ Result<void> PointProjectionTechnique::restart(const TechniqueContext& context, 
   m_pass = m_shaded = 0;
   m_fillStride = PixelOrder::kStrides[0];
   m_converged = m_preview = false;
+  const bool dark = !m_lit && m_lighting.empty();
   if (m_lit || !gathers()) planPass(0);
   else planPreview();
   return gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
     context.film.recordClear(r);
     r.fillBuffer(m_indirect, 0, 0, 0);
-    if (!m_lit) m_light.recordClear(r);
+    if (dark) m_light.recordClear(r);
   });
 }
 
 Result<Progress> PointProjectionTechnique::advance(const TechniqueContext& context, double seconds) {
   if (m_pass >= sampleLimit(context)) m_converged = true;
   if (m_converged) return progress();
+  if (m_tasks.empty()) return light(context, seconds);
   if (auto done = m_tasks.advance(context, seconds); !done) return done.error();
-  if (!m_tasks.empty()) return progress();
-  if (m_preview) {
-    m_preview = false;
-    planPass(0);
-    return progress();
-  }
+  if (!m_tasks.empty() || m_preview) return progress();
   ++m_pass;
   planPass(m_pass);
   Progress p = progress();
   p.passFinished = true;
   return p;
+}
+
+// Between the preview and the first pass.
+Result<Progress> PointProjectionTechnique::light(const TechniqueContext& context, double seconds) {
+  if (auto done = m_lighting.advance(context, seconds); !done) return done.error();
+  if (!m_lighting.empty()) return progress();
+  m_lit = true;
+  m_preview = false;
+  planPass(0);
+  return progress();
 }
 
 Progress PointProjectionTechnique::progress() const {
@@ -217,7 +240,8 @@ std::vector<std::string> PointProjectionTechnique::ran() const {
   if (gathers() && m_needs.glossy) names.emplace_back("glossy gathers");
   if (gathers() && m_light.hasLobes()) names.emplace_back("glossy lobes of points");
   if (m_needs.sharp) names.emplace_back("rays through sharp lobes");
-  if (m_settings.bounces > 1) names.emplace_back("gathers at points");
+  if (gathers() && bouncesAtPoints() > 0) names.emplace_back(m_settings.paths > 0 ? "paths from points" : "gathers at points");
+  if (gathers() && m_settings.correctionRays > 0) names.emplace_back("correction rays");
   return names;
 }
 

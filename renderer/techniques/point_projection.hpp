@@ -5,11 +5,13 @@ namespace limn {
 
 /// Importance-driven point projection [IPP]: lit points on all surfaces are projected into a micro-buffer at pixels chosen
 /// adaptively; the other pixels are reconstructed from those. Direct light and lobes too narrow for splats are traced.
-/// Biased: micro-buffers see 1,024 directions, points stand for disks, pixels between samples are interpolated, and light
-/// ends after the announced number of bounces.
-/// The bias falls as points, projections and the micro-buffer grow: relMSE of indirect light below 0.02 in a Cornell box and 0.04
-/// in an open room, each in 48x36 pixels without the filter. The filter blurs by pixels; between splats of a near wall a little
-/// light passes; gaps narrower than splats leak. tests/techniques/point_projection_*_test.cpp hold the bounds.
+/// Bounces arrive at some of the points by paths and are interpolated to the others; rays correct what micro-buffers show.
+/// Biased: points tell of surfaces as far as the next point, pixels between samples are interpolated, and light ends after
+/// the announced number of bounces.
+/// The bias of indirect light is a relMSE below 0.005 in a Cornell box, below 0.03 with caustics of glass, its energy right
+/// within 3 %, in 48x36 pixels without the filter, which blurs by pixels. Without correction rays it falls as points,
+/// projections and the micro-buffer grow; light passes between splats of near walls, and gaps narrower than splats leak.
+/// tests/techniques/point_projection_*_test.cpp hold the bounds.
 const TechniqueInfo& pointProjectionInfo();
 std::unique_ptr<Technique> makePointProjection();
 

@@ -18,6 +18,7 @@ struct PointProjectionWork {
   uint64_t pointUpdates = 0;   ///< of the points as a whole, moved ones included
   uint64_t slotsLit = 0;       ///< of every cluster, by rays
   uint64_t bounceSites = 0;    ///< gathered at points
+  uint64_t pathSides = 0;      ///< of points, followed paths from
   uint64_t pixelsGathered = 0;
 };
 
@@ -27,7 +28,7 @@ constexpr uint32_t kBounceSlots = 128;
 /// Values of the announced parameters.
 struct PointProjectionSettings {
   uint32_t points = 0, clusters = 0, projections = 0, microSize = 0, bounces = 0, relightSamples = 0, startGrid = 0,
-           filterSize = 0, maxSamples = 0;
+           filterSize = 0, maxSamples = 0, correctionRays = 0, bouncePoints = 0, paths = 0;
   float threshold = 0.0f, lambda = 0.0f;
 };
 
@@ -51,10 +52,13 @@ class PointProjectionTechnique final : public Technique {
 
  private:
   // point_projection.cpp
+  void forgetLight();
+  Result<Progress> light(const TechniqueContext& context, double seconds);
   Result<void> makeBuffers(const TechniqueContext& context);
   Result<void> updatePoints(const TechniqueContext& context);
   PointLightContext lightContext(const TechniqueContext& context) const;
   std::vector<vk::Binding> sceneBindings(const TechniqueContext& context, const vk::Buffer& list) const;
+  std::vector<vk::Binding> pointBindings(const TechniqueContext& context, const vk::Buffer& list) const;
   std::vector<vk::Binding> siteBindings(const TechniqueContext& context) const;
   std::vector<vk::Binding> gatherBindings(const TechniqueContext& context) const;
   std::vector<vk::Binding> bounceBindings(const TechniqueContext& context) const;
@@ -70,7 +74,11 @@ class PointProjectionTechnique final : public Technique {
   void planPass(uint32_t pass);
   void planLighting();
   void pushCoarsePicture();
-  void pushRelight(SlotRange slots, uint32_t samples, WorkRate& rate);
+  void planBounces();
+  uint32_t bouncesAtPoints() const;
+  void pushRelight(TaskQueue& queue, SlotRange slots, uint32_t samples, WorkRate& rate);
+  void pushPaths(TaskQueue& queue, uint32_t samples, uint32_t endSlot);
+  void pushSpread(TaskQueue& queue, uint32_t endSlot, bool compose);
   void pushBounce(bool first, uint32_t endSlot, bool compose);
   void pushSites(uint32_t from, uint32_t end);
   void pushGather(const char* name, Task::Begin select);
@@ -82,6 +90,7 @@ class PointProjectionTechnique final : public Technique {
 
   // point_projection_work.cpp
   Result<void> relight(const TechniqueContext& context, SlotRange slots, uint32_t samples);
+  Result<void> paths(const TechniqueContext& context, SlotRange slots, uint32_t samples);
   Result<uint32_t> listBounceSites(const TechniqueContext& context, bool first);
   Result<void> spread(const TechniqueContext& context, SlotRange slots, bool compose);
   Result<void> sites(const TechniqueContext& context, uint32_t first, uint32_t count);
@@ -94,7 +103,8 @@ class PointProjectionTechnique final : public Technique {
   SceneNeeds m_needs;
 
   SurfacePoints m_points;
-  PointGrid m_pointGrid;
+  PointGrid m_pointGrid;    ///< of the points at which bounces are gathered
+  PointGrid m_nearestGrid;  ///< of all points
   PointLightCache m_light;
   PointProjection m_gather;
   AdaptiveGrid m_grid;
@@ -108,13 +118,15 @@ class PointProjectionTechnique final : public Technique {
   uint32_t m_bounceSites = 0;          ///< in m_bounceList
   bool m_useFiltered = false;          ///< m_filtered holds what m_indirect does, filtered
 
-  TaskQueue m_tasks;
-  WorkRate m_previewRate{1e4}, m_relightRate{3e3}, m_bounceRate{1e4}, m_spreadRate{1e3}, m_siteRate{1e6}, m_gatherRate{8e3}, m_shadeRate{5e5},
+  TaskQueue m_tasks;     ///< of the present pass
+  TaskQueue m_lighting;  ///< all light of all points; goes on where a new view interrupts it
+  WorkRate m_previewRate{1e4}, m_relightRate{3e3}, m_pathRate{1e2}, m_bounceRate{1e4}, m_spreadRate{1e3}, m_siteRate{1e6}, m_gatherRate{8e3}, m_shadeRate{5e5},
       m_filterRate{2e3};
   uint64_t m_lightingRevision = 0;
   bool m_pointsKnown = false;  ///< m_points are those of the settings
   bool m_lit = false;          ///< the points carry all their light
-  uint32_t m_litSlots = 0;     ///< of every cluster, lit so far
+  bool m_previewLit = false;   ///< a first part of them carries some of it
+  uint32_t m_litSlots = 0;     ///< of every cluster, lit so far, the first ones
   uint32_t m_round = 0;        ///< of the present gathers
   float m_meanLuminance = 0.0f;  ///< gathered on the start grid [W·sr⁻¹·m⁻²]
   uint32_t m_pass = 0;

@@ -9,7 +9,7 @@ namespace limn {
 namespace {
 
 /// Slots of every cluster that the first picture after a change of light is made of.
-constexpr uint32_t kPreviewSlots = 32;
+constexpr uint32_t kPreviewSlots = 32, kPreviewPaths = 4;
 /// Passes 1 to 3 refine to every 4th, 2nd and each pixel; from this one on what was interpolated is gathered, share by share,
 /// and then every pixel again.
 constexpr uint32_t kFirstLatePass = 4, kShares = 64;
@@ -22,11 +22,18 @@ constexpr float kDisplayRange = 16.0f;
 
 }  // namespace
 
-// After a change of light: a picture from a first part of the points. It is shown, and then replaced: no bit of it stays, so
-// that pass 0 is the same whether there was a preview or not.
+// After a change of light: a picture from a first part of the points, and before all light is there. It is shown, and then
+// replaced: no bit of it stays, so that pass 0 is the same whether there was a preview or not.
 void PointProjectionTechnique::planPreview() {
   m_preview = true;
-  pushRelight({0, std::min(kPreviewSlots, m_light.layout().clusterSize)}, 1, m_previewRate);
+  const uint32_t slots = std::min(kPreviewSlots, m_light.layout().clusterSize);
+  if (!m_previewLit) pushRelight(m_tasks, {0, slots}, 1, m_previewRate);
+  if (!m_previewLit && bouncesAtPoints() > 0 && m_settings.paths > 0) pushPaths(m_tasks, kPreviewPaths, slots);
+  m_tasks.push({"preview lit", nullptr, [this](const TechniqueContext&) -> Result<uint32_t> {
+                  m_previewLit = true;
+                  if (m_lighting.empty()) planLighting();
+                  return 0u;
+                }, {}});
   pushCoarsePicture();
   pushSites(m_pixelOrder.levelEnd[0], uint32_t(m_pixelOrder.pixels.size()));
   pushFill(PixelOrder::kStrides[0] / 2);
@@ -37,7 +44,6 @@ void PointProjectionTechnique::planPass(uint32_t pass) {
   const auto pixels = uint32_t(m_pixelOrder.pixels.size());
   if (!gathers()) return pushShade(pixels, pass == 0, false);
   if (pass == 0) {
-    if (!m_lit) planLighting();
     pushCoarsePicture();
     pushSites(m_pixelOrder.levelEnd[0], pixels);
     for (uint32_t stride = m_settings.startGrid / 2; stride >= PixelOrder::kStrides[0]; stride /= 2) pushLevel(stride);
@@ -74,38 +80,56 @@ void PointProjectionTechnique::pushCoarsePicture() {
   pushShade(m_pixelOrder.levelEnd[0], true, true);
 }
 
-// All light of all points: direct, then one bounce after the other. The last bounce arrives at the pixels; the points need it
-// only where rays through sharp lobes end at them.
+// The last bounce arrives at the pixels; the points need it only where rays through sharp lobes end at them.
+uint32_t PointProjectionTechnique::bouncesAtPoints() const {
+  return m_needs.sharp ? m_settings.bounces : std::max(m_settings.bounces, 1u) - 1u;
+}
+
+// All light of all points: direct, then what paths find at some of them, spread over the others.
 void PointProjectionTechnique::planLighting() {
-  pushRelight({0, m_light.layout().clusterSize}, m_settings.relightSamples, m_relightRate);
-  const uint32_t atPoints = m_settings.bounces - (m_needs.sharp ? 0 : 1);
   const uint32_t size = m_light.layout().clusterSize;
-  for (uint32_t bounce = 0; bounce < atPoints; ++bounce) {
+  pushRelight(m_lighting, {0, size}, m_settings.relightSamples, m_relightRate);
+  if (m_settings.paths == 0) return planBounces();
+  if (bouncesAtPoints() > 0) pushPaths(m_lighting, m_settings.paths, size);
+}
+
+// As in the paper: one bounce after the other, gathered at points as it is at pixels.
+void PointProjectionTechnique::planBounces() {
+  const uint32_t size = m_light.layout().clusterSize;
+  for (uint32_t bounce = 0; bounce < bouncesAtPoints(); ++bounce) {
     // Pixels project all points with all bounces but the last; earlier bounces reach only the points that the next one projects.
     const bool seen = bounce + 2 >= m_settings.bounces;
     pushBounce(bounce == 0, seen ? size : std::min(kBounceSlots, size), bounce + 1 < m_settings.bounces);
   }
-  m_tasks.push({"points lit", nullptr, [this](const TechniqueContext&) -> Result<uint32_t> {
-                  m_lit = true;
-                  return 0u;
-                }, {}});
 }
 
-void PointProjectionTechnique::pushRelight(SlotRange slots, uint32_t samples, WorkRate& rate) {
-  m_tasks.push({"relight", &rate, [slots](const TechniqueContext&) -> Result<uint32_t> { return slots.end - slots.first; },
-                [this, samples](const TechniqueContext& c, uint32_t first, uint32_t count) {
-                  return relight(c, {first, first + count}, samples);
-                }});
+void PointProjectionTechnique::pushRelight(TaskQueue& queue, SlotRange slots, uint32_t samples, WorkRate& rate) {
+  queue.push({"relight", &rate, [slots](const TechniqueContext&) -> Result<uint32_t> { return slots.end - slots.first; },
+              [this, samples](const TechniqueContext& c, uint32_t first, uint32_t count) {
+                return relight(c, {first, first + count}, samples);
+              }});
+}
+
+void PointProjectionTechnique::pushPaths(TaskQueue& queue, uint32_t samples, uint32_t endSlot) {
+  queue.push({"paths", &m_pathRate, [this](const TechniqueContext&) -> Result<uint32_t> { return m_bounceSlots; },
+              [this, samples](const TechniqueContext& c, uint32_t first, uint32_t count) {
+                return paths(c, {first, first + count}, samples);
+              }});
+  pushSpread(queue, endSlot, true);
 }
 
 void PointProjectionTechnique::pushBounce(bool first, uint32_t endSlot, bool compose) {
-  m_tasks.push({"bounce", &m_bounceRate, [this, first](const TechniqueContext& c) { return listBounceSites(c, first); },
+  m_lighting.push({"bounce", &m_bounceRate, [this, first](const TechniqueContext& c) { return listBounceSites(c, first); },
                 [this](const TechniqueContext& c, uint32_t from, uint32_t count) { return gatherAtPoints(c, from, count); }, 32});
-  m_tasks.push({"spread", &m_spreadRate,
-                [this, endSlot](const TechniqueContext&) -> Result<uint32_t> { return endSlot - std::min(m_bounceSlots, endSlot); },
-                [this, compose](const TechniqueContext& c, uint32_t from, uint32_t count) {
-                  return spread(c, {m_bounceSlots + from, m_bounceSlots + from + count}, compose);
-                }});
+  pushSpread(m_lighting, endSlot, compose);
+}
+
+void PointProjectionTechnique::pushSpread(TaskQueue& queue, uint32_t endSlot, bool compose) {
+  queue.push({"spread", &m_spreadRate,
+              [this, endSlot](const TechniqueContext&) -> Result<uint32_t> { return endSlot - std::min(m_bounceSlots, endSlot); },
+              [this, compose](const TechniqueContext& c, uint32_t from, uint32_t count) {
+                return spread(c, {m_bounceSlots + from, m_bounceSlots + from + count}, compose);
+              }});
 }
 
 void PointProjectionTechnique::pushSites(uint32_t from, uint32_t end) {
@@ -122,7 +146,7 @@ void PointProjectionTechnique::pushLevel(uint32_t stride) {
   pushGather("level", [this, stride](const TechniqueContext& c) {
     m_round = 0;
     float threshold = m_settings.threshold;
-    for (uint32_t s = PixelOrder::kStrides[0]; s > stride; s /= 2) threshold *= 2.0f;
+    for (uint32_t s = m_settings.startGrid / 2; s > stride; s /= 2) threshold *= 2.0f;
     if (m_settings.threshold < kObjectEdge) threshold = std::min(threshold, kObjectEdge);
     const CoherenceRule rule{threshold, m_settings.lambda,
                              float(c.scene.radius()), kDisplayRange * m_meanLuminance};

@@ -22,9 +22,18 @@ Result<void> PointProjectionTechnique::relight(const TechniqueContext& context, 
     m_light.recordRelight(r, lighting, {slots, samples, 0, context.seed});
     m_light.recordCompose(r, lighting, slots);
   });
-  m_litSlots = slots.end;
+  m_litSlots = std::max(m_litSlots, slots.end);
   m_work.slotsLit += slots.end - slots.first;
   return done;
+}
+
+// One slot of every cluster an item, both sides.
+Result<void> PointProjectionTechnique::paths(const TechniqueContext& context, SlotRange slots, uint32_t samples) {
+  const PointLightContext lighting = lightContext(context);
+  m_work.pathSides += 2 * uint64_t(slots.end - slots.first) * m_points.clusterCount();
+  return gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
+    m_light.recordPaths(r, lighting, {slots, samples, 0, bouncesAtPoints(), context.seed});
+  });
 }
 
 Result<void> PointProjectionTechnique::sites(const TechniqueContext& context, uint32_t first, uint32_t count) {
@@ -35,7 +44,7 @@ Result<void> PointProjectionTechnique::sites(const TechniqueContext& context, ui
 
 shared::PointProjectionPush PointProjectionTechnique::gatherPush(const TechniqueContext& context, uint32_t first, uint32_t count) const {
   return {first, count, context.seed, m_round, m_settings.projections, m_points.clusterCount(), m_points.clusterSize(), m_litSlots,
-          float(m_points.areaPerPoint()), m_settings.microSize};
+          float(m_points.areaPerPoint()), m_settings.microSize, m_settings.correctionRays};
 }
 
 Result<void> PointProjectionTechnique::gather(const TechniqueContext& context, uint32_t first, uint32_t count) {

@@ -26,12 +26,10 @@ void add(inout Sides sum, float weight, vec3 front, vec3 back) {
 // tell: `own` from points that face the same way, `turned` from those that face the other, their sides exchanged.
 void addNeighbours(vec3 posR, vec3 normal, inout Sides own, inout Sides turned) {
   PointGridInfo info = pointGridInfo();
-  ivec3 base = ivec3(floor(clamp((posR - info.originR) * info.cellsPerM - 0.5, vec3(-1.0e6), vec3(1.0e6))));
+  ivec3 base = pointGridBase(info, posR);
   for (int c = 0; c < 8; ++c) {
-    uint bucket = pointGridBucket(base + ivec3(c & 1, c >> 1 & 1, c >> 2), info.bucketMask);
-    uint first = texelFetch(pointGrid, int(kPointGridInfoWords + bucket)).x;
-    uint end = min(texelFetch(pointGrid, int(kPointGridInfoWords + bucket + 1u)).x, first + kPointGridMaxEntries);
-    for (uint e = first; e < end; ++e) {
+    uvec2 cell = pointGridCell(info, base, c);
+    for (uint e = cell.x; e < cell.y; ++e) {
       uint point = texelFetch(pointGridEntries, int(e)).x;
       uvec4 raw = texelFetch(gridPoints, int(point));
       float cosine = dot(octDecode(raw.w), normal);

@@ -7,6 +7,7 @@ struct Site {
   bool valid;
   vec3 posR;
   vec3 geometricNormal, t, b, n;
+  float extent;           // [m] largest coordinate of the triangle's corners, for offsetOrigin
   float clearance;        // [m] points less high above the surface are part of it, or rounding
   bool glossy;            // has a rough glossy lobe
   vec3 wo;                // viewer in the frame
@@ -17,11 +18,12 @@ struct Site {
 
 const float kLeastF0 = 0.01;  // quotients by reflectances below this stay bounded
 
-Site siteAt(uint id, vec3 posR, vec3 geometricNormal, vec3 normal) {
+Site siteAt(uint id, vec3 posR, float extent, vec3 geometricNormal, vec3 normal) {
   Site s;
   s.id = id;
   s.valid = true;
   s.posR = posR;
+  s.extent = extent;
   s.geometricNormal = geometricNormal;
   s.n = normal;
   makeFrame(normal, s.t, s.b);
@@ -38,7 +40,13 @@ Site siteAt(uint id, vec3 posR, vec3 geometricNormal, vec3 normal) {
 Site makeSite(uint entry) {
   uvec4 point = texelFetch(points, int(entry >> 1));
   vec3 n = octDecode(point.w) * ((entry & 1u) != 0u ? -1.0 : 1.0);
-  return siteAt(entry, uintBitsToFloat(point.xyz), n, n);
+#ifdef LIMN_GATHER_CORRECT
+  PointSite site = pointSites[entry >> 1];
+  float extent = facetOf(texelFetch(triangles, int(site.triangle)).xyz, cornerWeights(site.barycentrics), n).extent;
+#else
+  float extent = 0.0;
+#endif
+  return siteAt(entry, uintBitsToFloat(point.xyz), extent, n, n);
 }
 #else
 Site makeSite(uint pixel) {
@@ -48,7 +56,7 @@ Site makeSite(uint pixel) {
   uint triangle = valid ? g.triangle : 0u;
   vec3 viewDir = camera.perspective != 0u ? normalize(camera.eyeR - g.posR) : -camera.forward;
   Surface surface = makeSurface(triangle, g.barycentrics, viewDir);
-  Site s = siteAt(pixel, g.posR, surface.geometricNormal, normal);
+  Site s = siteAt(pixel, g.posR, surface.extent, surface.geometricNormal, normal);
   s.valid = valid;
   if (kUseSpecular) {
     Bsdf f = roughPart(makeBsdf(surface, viewDir));

@@ -1,10 +1,12 @@
 // Light gathered at sites by splatting points into a micro-buffer; one workgroup a site. Two points of every cluster
 // explore how much of the view it fills, the rest is drawn from clusters in that proportion. [IPP §3.2, §4]
 // LIMN_GATHER_POINTS: sites are the points' sides. LIMN_GATHER_DUMP: pixels, and each writes its micro-buffer instead.
+// LIMN_GATHER_CORRECT: rays correct what the micro-buffer brings.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/shared/bvh_shared.h"
+#include "shaders/shared/film_shared.h"
 #include "shaders/shared/gather_shared.h"
 #include "shaders/shared/point_shared.h"
 #include "shaders/lib/scene_bindings.glsl"
@@ -37,6 +39,9 @@ layout(binding = BINDING_POINT_RADIANCE) uniform samplerBuffer pointRadiance;
 layout(binding = BINDING_POINT_LOBES, scalar) readonly buffer Lobes { PointLobes pointLobes[]; };
 #ifdef LIMN_GATHER_POINTS
 layout(binding = BINDING_POINT_LIGHT, scalar) buffer Light { PointLight pointLight[]; };
+#ifdef LIMN_GATHER_CORRECT
+layout(binding = BINDING_POINT_SITES, scalar) readonly buffer PointSites { PointSite pointSites[]; };
+#endif
 #else
 layout(binding = BINDING_G_BUFFER, scalar) readonly buffer Sites { GatherSite sites[]; };
 #ifdef LIMN_GATHER_DUMP
@@ -50,11 +55,16 @@ layout(push_constant, scalar) uniform Push { PointProjectionPush push; };
 shared uint micro[kMostTexels];             // nearest: squared distance in the high bits, then the projection
 shared uint projected[kMostProjections];    // 2 * point + side of each projection; cluster of each sample before that
 shared float sumOfLanes[kMostGroup];
+#ifdef LIMN_GATHER_CORRECT
+shared float weightOfLanes[kMostGroup];
+#endif
 
 #include "shaders/gather/gather_site.glsl"
 
 // Squared distance in 20 bits, for the nearest to win: the rest of the word tells equals apart.
 uint depthKey(float d2) { return (floatBitsToUint(d2) << 1) & ~kSampleMask; }
+
+uint keyOf(Site s) { return hashCombine(hashCombine(s.id + 1u, push.round), push.seed); }
 
 // First texel and end of the square that a point's disk covers. [IPP §3.2]
 ivec4 splatOf(View v, float area) {
@@ -220,28 +230,59 @@ vec4 seen(Site s, uint i, vec3 dirW) {
 
 vec3 toWorldOf(Site s, vec3 w) { return s.t * w.x + s.b * w.y + s.n * w.z; }
 
+// Adds radiance from the solid angle of a texel around a point of the octahedron; returns what radiance 1 would bring to the
+// viewer, up to a factor.
+float addLight(inout IndirectTexel sum, Site s, vec3 q, vec3 radiance) {
+  vec3 wi = normalize(q);
+  float solidAngle = microSolidAngle(q) / float(push.microSize * push.microSize), factor = wi.z * s.albedo;
+  sum.diffuse += radiance * (solidAngle * wi.z * kInvPi);
+  if (kUseSpecular) {
+    float schlick, value = glossyValue(s, wi, schlick);
+    vec3 fresnel = s.f0 + (s.f90 - s.f0) * schlick;
+    sum.glossy += radiance * (solidAngle * value) * (fresnel / max(s.f0, vec3(kLeastF0)));
+    factor += s.glossy ? value * luminance(fresnel) : 0.0;
+  }
+  return factor * solidAngle;
+}
+
+void addTo(inout IndirectTexel sum, IndirectTexel more) {
+  sum.diffuse += more.diffuse;
+  sum.glossy += more.glossy;
+}
+
 // What the micro-buffer brings to the site, summed over the texels of this invocation.
 IndirectTexel reduce(Site s) {
   IndirectTexel sum = IndirectTexel(vec3(0.0), 0.0, vec3(0.0), kIndirectSampled);
-  float texelArea = 1.0 / float(push.microSize * push.microSize);
-  vec3 perF0 = 1.0 / max(s.f0, vec3(kLeastF0));
+  float brought = 0.0, factors = 0.0;
   for (uint i = gl_LocalInvocationIndex; i < push.microSize * push.microSize; i += kGroup) {
-    vec3 q = microTexel(i, push.microSize), wi = normalize(q);
-    float solidAngle = microSolidAngle(q) * texelArea;
-    vec3 radiance = seen(s, i, toWorldOf(s, wi)).rgb * solidAngle;
-    sum.diffuse += radiance * (wi.z * kInvPi);
-    if (kUseSpecular) {
-      float schlick, value = glossyValue(s, wi, schlick);
-      sum.glossy += radiance * value * ((s.f0 + (s.f90 - s.f0) * schlick) * perF0);
-    }
+    vec3 q = microTexel(i, push.microSize), radiance = seen(s, i, toWorldOf(s, normalize(q))).rgb;
+    float factor = addLight(sum, s, q, radiance);
+#ifdef LIMN_GATHER_CORRECT
+    importance[i] = factor * luminance(radiance);
+    clusterRun[i] = floatBitsToUint(factor);
+    brought += importance[i];
+    factors += factor;
+#endif
   }
+#ifdef LIMN_GATHER_CORRECT
+  sumOfLanes[gl_LocalInvocationIndex] = brought;
+  weightOfLanes[gl_LocalInvocationIndex] = factors;
+#endif
   return sum;
 }
+
+#ifdef LIMN_GATHER_CORRECT
+#include "shaders/gather/correction.glsl"
+#endif
 
 // The same for the site, summed in the order of invocations. In the first one.
 IndirectTexel reduceAll(Site s) {
   uint lane = gl_LocalInvocationIndex;
   IndirectTexel sum = reduce(s);
+#ifdef LIMN_GATHER_CORRECT
+  barrier();
+  if (push.correctionRays > 0u && s.valid) addTo(sum, correction(s, keyOf(s)));
+#endif
   float words[6] = float[6](sum.diffuse.x, sum.diffuse.y, sum.diffuse.z, sum.glossy.x, sum.glossy.y, sum.glossy.z);
   barrier();
   for (uint c = 0u; c < 6u; ++c) importance[c * kGroup + lane] = words[c];
@@ -253,6 +294,10 @@ IndirectTexel reduceAll(Site s) {
   }
   sum.diffuse = vec3(importance[0], importance[kGroup], importance[2u * kGroup]);
   sum.glossy = vec3(importance[3u * kGroup], importance[4u * kGroup], importance[5u * kGroup]);
+#ifdef LIMN_GATHER_CORRECT
+  sum.diffuse = max(sum.diffuse, vec3(0.0));  // rays that find much less than the splats show
+  sum.glossy = max(sum.glossy, vec3(0.0));
+#endif
   return sum;
 }
 
@@ -289,8 +334,7 @@ void project(Site s) {
     projectAll(s);
     return;
   }
-  uint key = hashCombine(hashCombine(s.id + 1u, push.round), push.seed);
-  uint base = kExplored * push.clusterCount, samples = push.projections - base;
+  uint key = keyOf(s), base = kExplored * push.clusterCount, samples = push.projections - base;
   explore(s, key);
   barrier();
   float sum = 0.0;

@@ -56,8 +56,9 @@ struct PointProjectionPush {
   uint clusterUsed;    // points a cluster that are lit so far, the first ones; <= clusterSize
   float areaPerPoint;  // [m²] of the whole set; a lit one stands for clusterSize / clusterUsed as much
   uint microSize;      // side of the micro-buffer [texel], <= 32
+  uint correctionRays; // that correct what the micro-buffer brings; 0: none
 };
-LIMN_ASSERT_SIZE(PointProjectionPush, 40);
+LIMN_ASSERT_SIZE(PointProjectionPush, 44);
 
 // One sample of every pixel of a list: direct light, sharp lobes followed by rays, gathered light looked up.
 struct ShadePush {

@@ -28,6 +28,24 @@ struct RelightPush {
 };
 LIMN_ASSERT_SIZE(RelightPush, 36);
 
+// Paths that one dispatch may take of a side: they take up to 15,000 loop turns each, see kRelightSamplesMost.
+LIMN_CONST_UINT(kPathsMost, 4u);
+// Paths without light after which a side of a point is dark.
+LIMN_CONST_UINT(kPathsToBelieveDark, 16u);
+
+// Paths from both sides of the slots [firstSlot, firstSlot + slotCount) of every cluster.
+struct TracePointsPush {
+  uint firstSlot;
+  uint slotCount;
+  uint clusterCount;
+  uint clusterSize;    // points a cluster
+  uint samples;        // paths a side takes now
+  uint samplesBefore;  // and those that its mean holds already; 0: it holds nothing yet
+  uint seed;
+  uint bounces;        // that reach the point; at least 1
+};
+LIMN_ASSERT_SIZE(TracePointsPush, 32);
+
 struct ComposePush {
   uint firstSlot;
   uint slotCount;

@@ -7,6 +7,7 @@
 #include "renderer/cache/point_light.hpp"
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/point_shared.h"
+#include "shaders/shared/relight_shared.h"
 #include "tests/gpu/kernel.hpp"
 #include "tests/support/scene_builder.hpp"
 
@@ -75,6 +76,10 @@ class LitPoints {
   }
   LitPoints& relight(uint32_t samples, uint32_t samplesBefore = 0, uint32_t seed = 1) {
     return relight({kAll, samples, samplesBefore, seed});
+  }
+  LitPoints& paths(PathWork work) {
+    must(gpu::runNow(device(), [&](vk::CommandRecorder& r) { cache().recordPaths(r, context(), work); }));
+    return *this;
   }
   LitPoints& compose() {
     must(gpu::runNow(device(), [&](vk::CommandRecorder& r) { cache().recordCompose(r, context(), kAll); }));

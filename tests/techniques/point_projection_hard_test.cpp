@@ -116,10 +116,10 @@ TEST(PointProjectionHard, ALightInAClosedBoxStaysInIt) {
   b.look({-0.25, 0.15, 0.75}, {0.1, 0.4, 0.4}, 1.2f);
   const FilmImage inside = points(b.scene), truth = paths(b.scene);
   EXPECT_EQ(firefliesOf(inside, truth, 20.0), 0);
-  // Between splats of a wall that is near, what lies behind it is seen: some light comes out, and darkness in.
-  EXPECT_LT(meanOf(outside, "indirect"), 0.015 * meanOf(inside, "indirect"));
-  EXPECT_LT(largestOf(outside, "indirect"), 0.12 * meanOf(inside, "indirect"));
-  EXPECT_GT(meanOf(inside, "indirect"), 0.65 * meanOf(truth, "indirect"));
+  // Between splats of a wall that is near, what lies behind it is seen; rays correct that.
+  EXPECT_LT(meanOf(outside, "indirect"), 0.001 * meanOf(inside, "indirect"));
+  EXPECT_LT(largestOf(outside, "indirect"), 0.01 * meanOf(inside, "indirect"));
+  EXPECT_GT(meanOf(inside, "indirect"), 0.95 * meanOf(truth, "indirect"));
   EXPECT_LT(meanOf(inside, "indirect"), 1.02 * meanOf(truth, "indirect"));
 }
 
@@ -145,8 +145,8 @@ TEST(PointProjectionHard, AShiningRoomAddsItsBouncesAndNoMore) {
   double direct = kEmission * (1.0 + kAlbedo), indirect = 0.0;
   for (uint32_t k = 2; k <= kBounces + 1; ++k) indirect += kEmission * std::pow(kAlbedo, k);
   EXPECT_NEAR(meanOf(film, "direct"), direct, 0.01 * direct);
-  EXPECT_NEAR(meanOf(film, "indirect"), indirect, 0.06 * indirect);
-  EXPECT_LT(largestOf(film, "indirect"), 1.02 * indirect);
+  EXPECT_NEAR(meanOf(film, "indirect"), indirect, 0.01 * indirect);
+  EXPECT_LT(largestOf(film, "indirect"), 1.06 * indirect);  // noise of the paths of points
 }
 
 }  // namespace

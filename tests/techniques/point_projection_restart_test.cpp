@@ -87,7 +87,7 @@ TEST(PointProjectionRestart, EachEditRedoesWhatItMust) {
     const PointProjectionWork after = workOf(session);
     EXPECT_EQ(after.pixelsGathered > before.pixelsGathered, row.gathers);
     EXPECT_EQ(after.slotsLit > before.slotsLit, row.lights);
-    EXPECT_EQ(after.bounceSites > before.bounceSites, row.lights);
+    EXPECT_EQ(after.pathSides > before.pathSides, row.lights);
     EXPECT_EQ(after.pointUpdates - before.pointUpdates, row.places ? 1u : 0u);
     EXPECT_EQ(after.blocksSampled > before.blocksSampled, row.samples);
   }
