@@ -1,7 +1,9 @@
 #include "renderer/cache/point_clusters.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 
 #include "renderer/base/check.hpp"
 #include "renderer/cache/parallel_for.hpp"
@@ -12,6 +14,8 @@ namespace {
 constexpr float kFlat = 0.25f;         // share of the longest side under which an axis is passed over
 constexpr uint32_t kSerialLevels = 3;  // splits before the groups go to the cores
 constexpr uint32_t kMortonBits = 10;   // an axis
+constexpr size_t kCountedSize = 2048;  // groups of fewer items are halved by comparisons alone
+constexpr uint32_t kBins = 1024;       // along an axis
 
 struct Item {
   glm::vec3 position;
@@ -42,15 +46,67 @@ int axisAfter(int last, const glm::vec3& size) {
   return longest;
 }
 
-/// Halves the group and gives the axis.
-int split(Group group, int lastAxis) {
-  const int axis = axisAfter(lastAxis, Box(group).size());
-  std::nth_element(group.begin(), group.begin() + std::ptrdiff_t(group.size() / 2), group.end(),
+/// Bins of equal width along an axis: an item in a lower bin than another has the smaller coordinate.
+class Bins {
+ public:
+  Bins(const Box& box, int axis) : m_axis(axis), m_low(box.low[axis]), m_perUnit(float(kBins) / box.size()[axis]) {}
+  /// Not where all lie in one place, or so near that the width has no reciprocal.
+  bool usable() const { return m_perUnit > 0.0f && std::isfinite(m_perUnit); }
+  uint32_t operator()(const Item& item) const {
+    return std::min(uint32_t((item.position[m_axis] - m_low) * m_perUnit), kBins - 1);
+  }
+
+ private:
+  int m_axis;
+  float m_low, m_perUnit;
+};
+
+void selectSmallest(Group group, size_t count, int axis) {
+  std::nth_element(group.begin(), group.begin() + std::ptrdiff_t(count), group.end(),
                    [axis](const Item& a, const Item& b) {
                      return a.position[axis] != b.position[axis] ? a.position[axis] < b.position[axis]
                                                                  : a.index < b.index;
                    });
-  return axis;
+}
+
+/// Brings the smaller half of the group to the front of what is given back: `group` or `spare`, which is as long. Items
+/// are counted into bins, which no branch depends on; only those in the median's bin are compared.
+Group halved(Group group, Group spare, const Box& box, int axis) {
+  const size_t half = group.size() / 2;
+  const Bins binOf(box, axis);
+  if (group.size() < kCountedSize || !binOf.usable()) {
+    selectSmallest(group, half, axis);
+    return group;
+  }
+  std::array<uint32_t, kBins> counts{};
+  for (const Item& item : group) ++counts[binOf(item)];
+  uint32_t median = 0;
+  size_t before = 0;
+  while (before + counts[median] <= half) before += counts[median++];
+  std::array<size_t, 3> next{0, before, before + counts[median]};  // lower bins, the median's, higher ones
+  for (const Item& item : group) {
+    const uint32_t bin = binOf(item);
+    spare[next[size_t(bin >= median) + size_t(bin > median)]++] = item;
+  }
+  selectSmallest(spare.subspan(before, counts[median]), half - before, axis);
+  return spare;
+}
+
+/// A group on its way to clusters.
+struct Part {
+  Group group, spare;       // the items, and as much room
+  int lastAxis;             // it was split along; -1: none yet
+  std::span<uint32_t> out;  // its part of the answer
+};
+
+std::array<Part, 2> split(const Part& part) {
+  const Box box(part.group);
+  const int axis = axisAfter(part.lastAxis, box.size());
+  const Group group = halved(part.group, part.spare, box, axis);
+  const Group spare = group.data() == part.group.data() ? part.spare : part.group;
+  const size_t half = group.size() / 2;
+  return {Part{group.first(half), spare.first(half), axis, part.out.first(half)},
+          Part{group.subspan(half), spare.subspan(half), axis, part.out.subspan(half)}};
 }
 
 uint32_t spreadBits(uint32_t v) {
@@ -91,13 +147,10 @@ void orderCluster(Group cluster, std::span<uint32_t> out) {
   }
 }
 
-/// Splits `group` `levels` times over and orders what comes out; `out` is the group's part of the answer.
-void clusterGroup(Group group, uint32_t levels, int lastAxis, std::span<uint32_t> out) {
-  if (levels == 0) return orderCluster(group, out);
-  const int axis = split(group, lastAxis);
-  const size_t half = group.size() / 2;
-  clusterGroup(group.first(half), levels - 1, axis, out.first(half));
-  clusterGroup(group.subspan(half), levels - 1, axis, out.subspan(half));
+/// Splits the part `levels` times over and orders what comes out.
+void clusterPart(const Part& part, uint32_t levels) {
+  if (levels == 0) return orderCluster(part.group, part.out);
+  for (const Part& half : split(part)) clusterPart(half, levels - 1);
 }
 
 }  // namespace
@@ -110,25 +163,18 @@ std::vector<uint32_t> clusterPoints(std::span<const glm::vec3> points, uint32_t 
   std::vector<Item> items(points.size());
   for (uint32_t i = 0; i < items.size(); ++i) items[i] = {points[i], i};
 
-  struct Part {
-    Group group;
-    int axis;
-    std::span<uint32_t> out;
-  };
-  std::vector<Part> parts{{items, -1, order}};
+  std::vector<Item> room(items.size());
+  std::vector<Part> parts{{items, room, -1, order}};
   uint32_t levels = uint32_t(std::countr_zero(clusters));
   for (uint32_t level = 0; level < kSerialLevels && levels > 0; ++level, --levels) {
     std::vector<Part> halves(parts.size() * 2);
     parallelFor(parts.size(), [&](size_t i) {
-      const auto [group, last, out] = parts[i];
-      const int axis = split(group, last);
-      const size_t half = group.size() / 2;
-      halves[2 * i] = {group.first(half), axis, out.first(half)};
-      halves[2 * i + 1] = {group.subspan(half), axis, out.subspan(half)};
+      const std::array<Part, 2> both = split(parts[i]);
+      std::copy(both.begin(), both.end(), halves.begin() + std::ptrdiff_t(2 * i));
     });
     parts = std::move(halves);
   }
-  parallelFor(parts.size(), [&](size_t i) { clusterGroup(parts[i].group, levels, parts[i].axis, parts[i].out); });
+  parallelFor(parts.size(), [&](size_t i) { clusterPart(parts[i], levels); });
   return order;
 }
 

@@ -15,7 +15,7 @@ namespace limn {
 namespace {
 
 constexpr uint32_t kFewPoints = 16;       // blocks of fewer have no spacing worth a figure
-constexpr uint32_t kPointsAPiece = 8192;  // of work for one core
+constexpr size_t kPointsAPiece = 8192;  // of work for one core
 
 /// Milliseconds since `since`, which becomes now.
 double lap(double& since) {
@@ -35,11 +35,12 @@ shared::SurfacePoint pointAt(const glm::vec3* corner, const glm::vec2& barycentr
   return point;
 }
 
-template <class T>
-std::vector<T> picked(const std::vector<T>& values, const std::vector<uint32_t>& order) {
-  std::vector<T> result(order.size());
-  for (size_t i = 0; i < order.size(); ++i) result[i] = values[order[i]];
-  return result;
+/// Calls work(begin, end) for pieces of [0, count) on all cores.
+template <class Work>
+void inPieces(size_t count, const Work& work) {
+  parallelFor((count + kPointsAPiece - 1) / kPointsAPiece, [&](size_t piece) {
+    work(piece * kPointsAPiece, std::min(count, (piece + 1) * kPointsAPiece));
+  });
 }
 
 /// Writes values to a buffer that is made anew when its size is another; one dummy where there are none.
@@ -112,8 +113,8 @@ bool SurfacePoints::lookAtPlacements(const gpu::DeviceScene& mirror, const std::
 void SurfacePoints::placePoints(const gpu::DeviceScene& mirror) {
   struct Piece {
     size_t block;
-    uint32_t begin, end;  // of the block's sites
-    size_t first;         // of the scene's points
+    size_t begin, end;  // of the block's sites
+    size_t first;       // of the scene's points
   };
   std::vector<Piece> pieces;
   size_t total = 0;
@@ -121,8 +122,8 @@ void SurfacePoints::placePoints(const gpu::DeviceScene& mirror) {
   m_relativeRadius = 1.0;
   for (size_t b = 0; b < m_placements.size(); ++b) {
     const BlockPoints& block = m_sampling.blocks()[b];
-    for (uint32_t begin = 0; begin < block.count; begin += kPointsAPiece)
-      pieces.push_back({b, begin, std::min(begin + kPointsAPiece, block.count), total + begin});
+    for (size_t begin = 0; begin < block.count; begin += kPointsAPiece)
+      pieces.push_back({b, begin, std::min<size_t>(begin + kPointsAPiece, block.count), total + begin});
     total += block.count;
     area += m_placements[b].area;
     if (block.count >= kFewPoints) m_relativeRadius = std::min(m_relativeRadius, block.relativeRadius);
@@ -133,7 +134,7 @@ void SurfacePoints::placePoints(const gpu::DeviceScene& mirror) {
   parallelFor(pieces.size(), [&](size_t p) {
     const Piece& piece = pieces[p];
     const Placement& placement = m_placements[piece.block];
-    for (uint32_t i = piece.begin; i < piece.end; ++i) {
+    for (size_t i = piece.begin; i < piece.end; ++i) {
       BlockSite site = m_sampling.blocks()[piece.block].sites[i];
       // Mirrored blocks have corners 1 and 2 exchanged, so that their front stays in front.
       if (placement.mirrored) std::swap(site.barycentrics.x, site.barycentrics.y);
@@ -148,8 +149,16 @@ void SurfacePoints::cluster(uint32_t clusters) {
   std::vector<glm::vec3> positions(m_points.size());
   for (size_t i = 0; i < positions.size(); ++i) positions[i] = m_points[i].posR;
   const std::vector<uint32_t> order = clusterPoints(positions, clusters);
-  m_points = picked(m_points, order);
-  m_sites = picked(m_sites, order);
+  std::vector<shared::SurfacePoint> points(order.size());
+  std::vector<shared::PointSite> sites(order.size());
+  inPieces(order.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      points[i] = m_points[order[i]];
+      sites[i] = m_sites[order[i]];
+    }
+  });
+  m_points = std::move(points);
+  m_sites = std::move(sites);
 }
 
 Result<void> SurfacePoints::upload(vk::Device& device) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <limits>
+#include <numeric>
 #include <random>
 
 #include "renderer/base/clock.hpp"
@@ -72,6 +74,34 @@ TEST(PointClusters, PointsInOnePlaneMakeSquares) {
   const Points points = onSquare(kClusters * 64);
   const double square = std::sqrt(2.0 / kClusters);
   EXPECT_LT(meanDiagonal(points, clusterPoints(points, kClusters), kClusters), square * 1.2);
+}
+
+/// Large groups are halved by counting: the same halves as those of a sort, whatever the distribution.
+TEST(PointClusters, HalvesAreThoseOfASort) {
+  constexpr size_t kCount = 40000;
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> unit;
+  const std::function<float()> coordinates[] = {
+      [&] { return unit(random); },                             // even
+      [&] { return std::floor(unit(random) * 8.0f) / 8.0f; },   // many in one place
+      [&] { return std::exp2(-40.0f * unit(random)); },         // nearly all in the first bin
+      [&] { return 1.0f + std::floor(unit(random) * 3.0f) * 0x1p-23f; },  // three neighbouring floats
+  };
+  for (const auto& coordinate : coordinates) {
+    Points points(kCount, glm::vec3(2.0f));
+    for (glm::vec3& p : points) p.y = coordinate();
+    const std::vector<uint32_t> order = clusterPoints(points, 2);
+    std::vector<uint32_t> sorted(kCount);
+    std::iota(sorted.begin(), sorted.end(), 0u);
+    std::stable_sort(sorted.begin(), sorted.end(), [&](uint32_t a, uint32_t b) { return points[a].y < points[b].y; });
+    for (const size_t half : {size_t(0), kCount / 2}) {
+      std::vector<uint32_t> ours(order.begin() + half, order.begin() + half + kCount / 2);
+      std::vector<uint32_t> expected(sorted.begin() + half, sorted.begin() + half + kCount / 2);
+      std::sort(ours.begin(), ours.end());
+      std::sort(expected.begin(), expected.end());
+      EXPECT_EQ(ours, expected);
+    }
+  }
 }
 
 TEST(PointClusters, CoincidentPointsAreSharedOut) {
