@@ -47,6 +47,7 @@ void beginLobes(uint point, Surface s) {
   bool glossy = (s.flags & kMaterialUnlit) == 0u && maxComponent(reflectance) >= kLobeReflectance;
   pointLobes[point].reflectance = glossy ? packRgbe(reflectance) : 0u;
   pointLobes[point].alpha = glossy ? max(s.alpha, kSplatAlpha) : 0.0;
+  pointLobes[point].normal = octEncode(s.normal);
   for (uint i = 0u; i < kLobesPerPoint; ++i) pointLobes[point].lobe[i] = PointLobe(0u, 0u);
 }
 

@@ -78,10 +78,11 @@ float glossyValue(Site s, vec3 wi, out float schlick) {
   return ggxD(h, s.alpha) * ggxG2(s.wo, wi, s.alpha) / (4.0 * s.wo.z);
 }
 
-// Radiance that the lobes of a point send along `dirW`, away from it, on that side of its surface. [IPP §3.2, §4]
+// Radiance that the lobes of a point send along `dirW`, away from it, on that side of its surface. The geometric normal
+// tells the side, the shading normal turns the lobes; where it looks away from `dirW`, that grazes it. [IPP §3.2, §4]
 vec3 lobeRadiance(uint point, vec3 dirW) {
-  vec3 n = octDecode(texelFetch(points, int(point)).w);
-  n = dot(n, dirW) < 0.0 ? -n : n;
+  float side = dot(octDecode(texelFetch(points, int(point)).w), dirW) < 0.0 ? -1.0 : 1.0;
+  vec3 n = octDecode(pointLobes[point].normal) * side;
   float alpha = pointLobes[point].alpha;
   vec3 f0 = unpackRgbe(pointLobes[point].reflectance), t, b, sum = vec3(0.0);
   makeFrame(n, t, b);

@@ -40,9 +40,10 @@ struct PointLobe {
 struct PointLobes {
   uint reflectance;  // at normal incidence, packRgbe
   float alpha;       // GGX alpha; 0: the point has no glossy lobe
+  uint normal;       // shading, of side 0, normal maps applied; unit, octahedral
   PointLobe lobe[kLobesPerPoint];
 };
-LIMN_ASSERT_SIZE(PointLobes, 40);
+LIMN_ASSERT_SIZE(PointLobes, 44);
 
 #ifndef LIMN_GLSL
 }  // namespace limn::shared

@@ -208,6 +208,7 @@ TEST(PointProjection, LobesOfPointsShineTowardsTheSite) {
   shared::PointLobes lobes{};
   lobes.reflectance = 0x80808080u;  // 1 in packRgbe
   lobes.alpha = 0.5f;
+  lobes.normal = gpu::octEncode({0.0f, -1.0f, 0.0f});
   lobes.lobe[1] = {gpu::octEncode({0.0f, -1.0f, 0.0f}), 0x80808080u};
   Gatherer g(points, 64, 1.0, 1.0f, nullptr, std::vector<shared::PointLobes>(4096, lobes));
   const auto texels = g.microBuffers(kBruteForce);
@@ -216,6 +217,28 @@ TEST(PointProjection, LobesOfPointsShineTowardsTheSite) {
   EXPECT_NEAR(texels[16 * 32 + 16].g, expected, 0.01f * expected);
   EXPECT_EQ(texels[0].w, 0.0f);
   EXPECT_NEAR(g.microBuffers()[16 * 32 + 16].g, expected, 0.01f * expected);
+}
+
+/// A normal map tilts the points by 30 degrees: light from 60 degrees is mirrored to the site, E D G / 4 c².
+TEST(PointProjection, LobesOfPointsTurnWithTheShadingNormal) {
+  const auto points = parallelogram({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}, 64, glm::vec3(0.125f));
+  const float angle = float(kPi) / 6.0f, c = std::cos(angle);
+  shared::PointLobes lobes{};
+  lobes.reflectance = 0x80808080u;
+  lobes.alpha = 0.5f;
+  lobes.lobe[0] = {gpu::octEncode({std::sin(2.0f * angle), -std::cos(2.0f * angle), 0.0f}), 0x80808080u};
+  for (const float side : {1.0f, -1.0f}) {  // the site sees the front, then the back
+    lobes.normal = gpu::octEncode(side * glm::vec3(std::sin(angle), -c, 0.0f));
+    auto turned = points;
+    for (LitPoint& p : turned) {
+      p.normal *= side;
+      if (side < 0.0f) std::swap(p.front, p.back);
+    }
+    Gatherer g(turned, 64, 1.0, 1.0f, nullptr, std::vector<shared::PointLobes>(4096, lobes));
+    const float shadowing = c / std::sqrt(0.25f + 0.75f * c * c);  // height-correlated Smith at two equal angles
+    const float expected = 0.125f + shadowing / (float(kPi) * 0.25f * 4.0f * c * c);
+    EXPECT_NEAR(g.microBuffers(kBruteForce)[16 * 32 + 16].g, expected, 0.02f * expected) << side;
+  }
 }
 
 TEST(PointProjection, SameSeedSameBits) {

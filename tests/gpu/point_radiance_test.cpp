@@ -192,6 +192,25 @@ TEST(PointLobes, NarrowLobesAreWidenedToTheLimitOfSplats) {
   for (const auto& l : LitPoints(b).relight(1).lobes()) EXPECT_EQ(l.alpha, shared::kSplatAlpha);
 }
 
+/// The floor of a metal whose normal map tilts everything towards +x, its sines and cosines being 0.6 and 0.8.
+TEST(PointLobes, KeepTheNormalThatTheMapGives) {
+  SceneBuilder b = metalFloor(0.5f);
+  b.pointLight({0.3f, 1.5f, -0.2f}, glm::vec3(1.0f), 5.0f);
+  for (const auto& l : LitPoints(b).relight(1).lobes())
+    EXPECT_GT(glm::dot(octDecode(l.normal), glm::vec3(0, 1, 0)), 1.0f - 1e-6f);
+
+  Image map;
+  map.width = map.height = 1;
+  map.rgba8 = {204, 128, 230, 255};
+  b.scene.images = {map};
+  b.scene.materials[0].normalTexture.image = 0;
+  Primitive& floor = b.scene.meshes[0].primitives[0];
+  floor.uv0.assign(floor.positions.size(), glm::vec2(0.5f));
+  floor.tangents.assign(floor.positions.size(), glm::vec4(1, 0, 0, 1));
+  for (const auto& l : LitPoints(b).relight(1).lobes())
+    EXPECT_GT(glm::dot(octDecode(l.normal), glm::vec3(0.6f, 0.8f, 0.0f)), 0.9999f);
+}
+
 TEST(PointLobes, AreLeftOutWhereNothingIsGlossy) {
   SceneBuilder b = floorOf(lambert(glm::vec3(0.5f)));
   EXPECT_FALSE(hasGlossySources(b.scene));
