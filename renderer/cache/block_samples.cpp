@@ -16,20 +16,9 @@ const Primitive& primitiveOf(const Scene& scene, const gpu::GeometryBlock& block
   return scene.meshes[block.mesh].primitives[block.primitive];
 }
 
-/// Hashes of the blocks' primitives; instances share one.
-std::vector<uint64_t> shapesOf(const Scene& scene, const std::vector<gpu::GeometryBlock>& blocks) {
-  std::map<std::pair<uint32_t, uint32_t>, uint64_t> hashes;
-  std::vector<uint64_t> shapes;
-  shapes.reserve(blocks.size());
-  for (const gpu::GeometryBlock& block : blocks) {
-    const auto [entry, isNew] = hashes.try_emplace({block.mesh, block.primitive});
-    if (isNew) {
-      const Primitive& p = primitiveOf(scene, block);
-      entry->second = hashWords(std::span(p.indices), hashWords(std::span(p.positions)));
-    }
-    shapes.push_back(entry->second);
-  }
-  return shapes;
+/// Positions that sites are sampled on when they may ride.
+std::span<const glm::vec3> restOf(const Primitive& p) {
+  return p.restPositions.empty() ? std::span(p.positions) : std::span(p.restPositions);
 }
 
 /// Other points for every block, so that instances differ.
@@ -63,20 +52,46 @@ std::vector<uint32_t> shareOut(uint32_t count, const std::vector<double>& weight
   return shares;
 }
 
+BlockSampling::Poses BlockSampling::posesOf(const Primitive& p) {
+  const uint64_t posed = hashWords(std::span(p.indices), hashWords(std::span(p.positions)));
+  if (p.restPositions.empty()) return {posed, posed};
+  return {posed, hashWords(std::span(p.indices), hashWords(std::span(p.restPositions)))};
+}
+
+/// Looks at a block that is not what it was; gives whether it needs other points.
+bool BlockSampling::measure(const Primitive& p, const Surface& surface, size_t block) {
+  m_surfaces[block] = surface;
+  const std::vector<glm::vec3> posed = stretchedCorners(p.positions, p.indices, surface.stretch);
+  std::vector<glm::vec3> sampled = stretchedCorners(restOf(p), p.indices, surface.shape);
+  const bool atRest = p.restPositions.empty() || misplacedShare(sampled, posed) <= kMostMisplaced;
+  if (!atRest) sampled = stretchedCorners(p.positions, p.indices, surface.shape);
+  m_areas[block] = areaOf(sampled) > 0.0 ? areaOf(posed) : 0.0;
+  const Source source{atRest ? surface.poses.rest : surface.poses.posed, atRest, surface.shape, surface.seed};
+  if (source == m_sources[block]) return false;
+  m_sources[block] = source;
+  return true;
+}
+
 uint32_t BlockSampling::update(const Scene& scene, const std::vector<gpu::GeometryBlock>& blocks,
                                const std::vector<glm::dmat4>& worldFromNodes, uint32_t count, uint32_t seed) {
-  const std::vector<uint64_t> shapes = shapesOf(scene, blocks);
+  std::map<std::pair<uint32_t, uint32_t>, Poses> poses;  // instances share one
+  for (const gpu::GeometryBlock& block : blocks) {
+    const auto [entry, isNew] = poses.try_emplace({block.mesh, block.primitive});
+    if (isNew) entry->second = posesOf(primitiveOf(scene, block));
+  }
+  m_surfaces.resize(blocks.size());
   m_sources.resize(blocks.size());
   m_areas.resize(blocks.size(), 0.0);
   m_points.resize(blocks.size());
 
   std::vector<uint8_t> stale(blocks.size(), 0);
   parallelFor(blocks.size(), [&](size_t i) {
-    const Source now{shapes[i], roundedStretch(glm::dmat3(worldFromNodes[blocks[i].node])), seedOf(seed, i)};
-    if (now == m_sources[i]) return;
-    m_sources[i] = now;
-    m_areas[i] = areaOf(stretchedCorners(primitiveOf(scene, blocks[i]), now.stretch));
-    stale[i] = 1;
+    const gpu::GeometryBlock& block = blocks[i];
+    const glm::dmat3 linear(worldFromNodes[block.node]);
+    const Surface now{poses.at({block.mesh, block.primitive}), roundedStretch(linear), roundedShape(linear),
+                      seedOf(seed, i)};
+    if (now == m_surfaces[i]) return;
+    stale[i] = measure(primitiveOf(scene, block), now, i);
   });
 
   const std::vector<uint32_t> counts = shareOut(count, m_areas);
@@ -91,7 +106,9 @@ uint32_t BlockSampling::update(const Scene& scene, const std::vector<gpu::Geomet
   parallelFor(work.size(), [&](size_t w) {
     BlockPoints& points = m_points[work[w]];
     const Source& source = m_sources[work[w]];
-    const std::vector<glm::vec3> corners = stretchedCorners(primitiveOf(scene, blocks[work[w]]), source.stretch);
+    const Primitive& p = primitiveOf(scene, blocks[work[w]]);
+    const std::vector<glm::vec3> corners =
+        stretchedCorners(source.atRest ? restOf(p) : std::span(p.positions), p.indices, source.shape);
     const CountClass counted = countClassOf(points.count);
     points.sites = sampleBlock(corners, counted, source.seed);
     points.relativeRadius = relativeRadius(corners, std::span(points.sites).first(counted.least));

@@ -13,12 +13,18 @@ namespace limn {
 struct BlockPoints {
   std::vector<BlockSite> sites;  ///< of the whole class; the first `count` are in use
   uint32_t count = 0;
-  double relativeRadius = 1.0;   ///< of the smallest set of the class; the others are about as good
+  double relativeRadius = 1.0;   ///< of the smallest set of the class, on the surface it was sampled on
 };
 
-/// Points of every block of a scene, sampled in the block's own space under its rounded stretch: where a block stands
-/// and how it is turned does not matter. What comes out is a function of scene, count and seed alone; what is kept from
-/// earlier calls saves time. [IPP §4]
+/// Sites of the rest pose ride along while no larger share of them would have to go to another triangle for an even
+/// density, see misplacedShare(); beyond that the pose is sampled for itself.
+constexpr double kMostMisplaced = 0.125;
+
+/// Points of every block of a scene. A block is sampled in its own space under the rounded shape of its stretch, in its
+/// rest pose if morph targets or a skin bend it: where it stands, how it is turned, how large it is and how it is bent
+/// does not matter, and its points ride along, until its areas have changed much: kShapeStepsPerOctave, kMostMisplaced,
+/// and the count that falls to it (CountClass). All of these are told from the state alone, never from what was before:
+/// what comes out is a function of scene, count and seed, and what is kept from earlier calls saves time. [IPP §4]
 class BlockSampling {
  public:
   /// Shares `count` points out by area (largest remainder) and samples the blocks that need it, on all cores. Gives how
@@ -29,16 +35,33 @@ class BlockSampling {
   const std::vector<BlockPoints>& blocks() const { return m_points; }
 
  private:
+  /// Hashes of a primitive's triangles.
+  struct Poses {
+    uint64_t posed = 0, rest = 0;  ///< equal where nothing bends it
+    bool operator==(const Poses&) const = default;
+  };
+  /// All that is asked about a block.
+  struct Surface {
+    Poses poses;
+    glm::dmat3 stretch{0.0}, shape{0.0};  ///< both rounded
+    uint32_t seed = 0;
+    bool operator==(const Surface&) const = default;
+  };
   /// What the points of a block depend on besides its count.
   struct Source {
-    uint64_t shape = 0;  ///< hash of the primitive's positions and indices
-    glm::dmat3 stretch{0.0};
+    uint64_t triangles = 0;  ///< hash, of the pose that is sampled
+    bool atRest = false;
+    glm::dmat3 shape{0.0};
     uint32_t seed = 0;
     bool operator==(const Source&) const = default;
   };
 
+  static Poses posesOf(const Primitive& primitive);
+  bool measure(const Primitive& primitive, const Surface& surface, size_t block);
+
+  std::vector<Surface> m_surfaces;
   std::vector<Source> m_sources;
-  std::vector<double> m_areas;  ///< under the rounded stretch
+  std::vector<double> m_areas;  ///< of the pose under the rounded stretch
   std::vector<BlockPoints> m_points;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "renderer/base/check.hpp"
 #include "renderer/cache/sample_elimination.hpp"
 
 namespace limn {
@@ -111,6 +112,16 @@ double areaOf(std::span<const glm::vec3> corners) {
   double sum = 0.0;
   for (size_t t = 0; t + 3 <= corners.size(); t += 3) sum += triangleArea(&corners[t]);
   return sum;
+}
+
+double misplacedShare(std::span<const glm::vec3> sampled, std::span<const glm::vec3> placed) {
+  LIMN_CHECK_EQ(sampled.size(), placed.size());
+  const double sampledArea = areaOf(sampled), placedArea = areaOf(placed);
+  if (!(sampledArea > 0.0 && placedArea > 0.0)) return 1.0;
+  double sum = 0.0;
+  for (size_t t = 0; t + 3 <= sampled.size(); t += 3)
+    sum += std::abs(triangleArea(&sampled[t]) / sampledArea - triangleArea(&placed[t]) / placedArea);
+  return 0.5 * sum;
 }
 
 std::vector<BlockSite> sampleBlock(std::span<const glm::vec3> corners, CountClass counts, uint32_t seed) {

@@ -33,6 +33,11 @@ std::vector<BlockSite> sampleBlock(std::span<const glm::vec3> corners, CountClas
 /// Sites on faces that look away from each other are not compared.
 double relativeRadius(std::span<const glm::vec3> corners, std::span<const BlockSite> sites);
 
+/// How badly sites sampled evenly on the triangles `sampled` fit the same triangles `placed`: the share of sites that
+/// would have to go to another triangle for the density to be even there, half the sum of the differences of the
+/// triangles' shares of area. 0 where all areas have grown by one factor, 1 where either has no area.
+double misplacedShare(std::span<const glm::vec3> sampled, std::span<const glm::vec3> placed);
+
 /// [unit of the corners, squared]; triangles whose area is not finite count as 0.
 double areaOf(std::span<const glm::vec3> corners);
 

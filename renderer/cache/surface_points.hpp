@@ -10,9 +10,9 @@
 namespace limn {
 
 /// Blue-noise points on all surfaces, each of about equal area, in clusters of equal size; they ride on their triangles
-/// when objects move. POINTS and POINT_SITES of shaders/shared/bindings.h are cluster-major, and the first m points of
-/// every cluster are spread over it. The contents are a function of scene, count, clusters and seed alone, however they
-/// came to be. [IPP §3.1, §3.2, §4] Render thread.
+/// when objects are moved, bent or scaled, see BlockSampling. POINTS and POINT_SITES of shaders/shared/bindings.h are
+/// cluster-major, and the first m points of every cluster are spread over it. The contents are a function of scene,
+/// count, clusters and seed alone, however they came to be. [IPP §3.1, §3.2, §4] Render thread.
 class SurfacePoints {
  public:
   /// What update() did and how long it took [ms].

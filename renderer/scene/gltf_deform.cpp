@@ -73,9 +73,11 @@ void skin(const std::vector<glm::dmat4>& joints, const std::string& pointer, Att
 
 void deform(Document& document, const tinygltf::Primitive& source, const Deformation& deformation,
             const std::string& pointer, Attributes& attributes) {
-  morph(document, source, deformation.morphWeights, pointer, attributes.vertices);
-  if (!deformation.localFromBind.empty() && !attributes.joints.empty())
-    skin(deformation.localFromBind, pointer, attributes);
+  const bool skinned = !deformation.localFromBind.empty() && !attributes.joints.empty();
+  const bool morphed = !deformation.morphWeights.empty() && !source.targets.empty();
+  if (skinned || morphed) attributes.vertices.restPositions = attributes.vertices.positions;
+  if (morphed) morph(document, source, deformation.morphWeights, pointer, attributes.vertices);
+  if (skinned) skin(deformation.localFromBind, pointer, attributes);
 }
 
 }  // namespace limn::gltf

@@ -20,8 +20,8 @@ struct Attributes {
   std::vector<std::vector<float>> weights;    ///< as joints
 };
 
-/// Moves positions, normals and tangents by morph targets, then by the skin. `pointer` is the primitive's place. Throws
-/// Fault.
+/// Moves positions, normals and tangents by morph targets, then by the skin; restPositions keep what was there where
+/// there are any. `pointer` is the primitive's place. Throws Fault.
 void deform(Document& document, const tinygltf::Primitive& source, const Deformation& deformation,
             const std::string& pointer, Attributes& attributes);
 

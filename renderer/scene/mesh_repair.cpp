@@ -43,6 +43,7 @@ glm::vec3 anyPerpendicular(const glm::vec3& n) {
 
 void gatherVertices(Primitive& primitive, const std::vector<uint32_t>& source) {
   gather(primitive.positions, source);
+  gather(primitive.restPositions, source);
   gather(primitive.normals, source);
   gather(primitive.tangents, source);
   gather(primitive.uv0, source);

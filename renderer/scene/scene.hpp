@@ -65,6 +65,7 @@ struct Material {
 struct Primitive {
   int32_t material = kNone;         ///< kNone: the default material
   std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> restPositions;  ///< before morph targets and skin; empty: nothing bends the primitive
   std::vector<glm::vec3> normals;
   std::vector<glm::vec4> tangents;  ///< w: handedness
   std::vector<glm::vec2> uv0, uv1;

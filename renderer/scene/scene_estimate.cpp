@@ -15,8 +15,8 @@ uint64_t bytesOf(const std::vector<T>& data) {
 }
 
 uint64_t bytesOf(const Primitive& p) {
-  return sizeof p + bytesOf(p.positions) + bytesOf(p.normals) + bytesOf(p.tangents) + bytesOf(p.uv0) + bytesOf(p.uv1) +
-         bytesOf(p.colors) + bytesOf(p.indices);
+  return sizeof p + bytesOf(p.positions) + bytesOf(p.restPositions) + bytesOf(p.normals) + bytesOf(p.tangents) +
+         bytesOf(p.uv0) + bytesOf(p.uv1) + bytesOf(p.colors) + bytesOf(p.indices);
 }
 
 }  // namespace

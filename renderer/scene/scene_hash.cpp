@@ -89,6 +89,7 @@ void add(Hasher& h, const Image& image) {
 void add(Hasher& h, const Primitive& p) {
   h.word(uint64_t(int64_t(p.material)));
   h.bulk(p.positions);
+  h.bulk(p.restPositions);
   h.bulk(p.normals);
   h.bulk(p.tangents);
   h.bulk(p.uv0);

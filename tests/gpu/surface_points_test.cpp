@@ -177,7 +177,7 @@ TEST(SurfacePoints, SamplesOnlyWhatChangedItsSize) {
   EXPECT_FALSE(world.update().changed);
   EXPECT_EQ(world.edit(kSphere, [](Transform& t) { t.scale = glm::dvec3(1.001); }).sampledBlocks, 0u);
   expectFresh(world);
-  const SurfacePoints::Update grown = world.edit(kSphere, [](Transform& t) { t.scale = glm::dvec3(1.05); });
+  const SurfacePoints::Update grown = world.edit(kSphere, [](Transform& t) { t.scale = glm::dvec3(1.5); });
   EXPECT_GE(grown.sampledBlocks, 1u);
   EXPECT_LT(grown.sampledBlocks, 8u);
   expectFresh(world);

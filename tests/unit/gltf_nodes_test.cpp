@@ -241,6 +241,12 @@ TEST(GltfMorph, WeightsOfTheNodeGoBeforeThoseOfTheMesh) {
   EXPECT_EQ(first(0), glm::vec3(0, 0, 0.5f));
   EXPECT_EQ(first(1), glm::vec3(2, 0, 0));
   EXPECT_EQ(first(3), glm::vec3(0));
+  const auto rest = [&](size_t node) {
+    return scene.meshes[size_t(scene.nodes[node].mesh)].primitives[0].restPositions;
+  };
+  ASSERT_EQ(rest(0).size(), 4u);
+  EXPECT_EQ(rest(0)[0], glm::vec3(0));
+  EXPECT_TRUE(rest(3).empty());  // nothing bends it
 }
 
 TEST(GltfMorph, TheWorkOfManyTargetsIsLimited) {
@@ -263,6 +269,7 @@ TEST(GltfMorph, FlatNormalsFollowTheMorphedShape) {
   const Scene scene = b.mustLoad().scene;
   expectNear(glm::dvec3(scene.meshes[0].primitives[0].normals[0]), glm::dvec3(0, -std::sqrt(0.5), std::sqrt(0.5)),
              1e-6);
+  EXPECT_EQ(scene.meshes[0].primitives[0].restPositions.size(), 6u);  // split as the posed vertices are
 }
 
 /// The square on two joints: the left vertices on joint node 1, the right ones on joint node 2, which is moved by (0,
@@ -288,6 +295,7 @@ TEST(GltfSkin, VerticesFollowTheirJointsWhereverTheNodeIs) {
   expectNear(at(world, p.positions[0]), {0, 0, 0}, 1e-5);
   expectNear(at(world, p.positions[1]), {1, 0, 3}, 1e-5);
   expectNear(at(world, p.positions[2]), {1, 1, 3}, 1e-5);  // its weights sum to one half and count relative to that
+  EXPECT_EQ(p.restPositions, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
 }
 
 TEST(GltfSkin, InverseBindMatricesApplyFirst) {

@@ -259,6 +259,33 @@ TEST(BlockMetric, LengthsAreKept) {
     EXPECT_NEAR(glm::length(u * v), glm::length(m * v), 0.015 * glm::length(m * v));
 }
 
+TEST(BlockMetric, ShapesForgetTheScale) {
+  const glm::dmat3 sheared(glm::dvec3(1.0, 0.0, 0.0), glm::dvec3(0.3, 2.0, 0.0), glm::dvec3(0.1, 0.2, 0.7));
+  for (const double scale : {1e-9, 0.3, 1e9})
+    EXPECT_EQ(roundedShape(sheared * scale), roundedShape(sheared)) << scale;
+  const auto shapeOf = [](double x, double y, double z) {
+    return roundedShape(glm::dmat3(glm::dvec3(x, 0, 0), glm::dvec3(0, y, 0), glm::dvec3(0, 0, z)));
+  };
+  EXPECT_EQ(shapeOf(1, 1, 1), glm::dmat3(1.0));
+  EXPECT_EQ(shapeOf(1.05, 1, 1.07), glm::dmat3(1.0));
+  EXPECT_NE(shapeOf(1.25, 1, 1), glm::dmat3(1.0));
+  EXPECT_EQ(shapeOf(3, 0, 0), glm::dmat3(glm::dvec3(1, 0, 0), glm::dvec3(0), glm::dvec3(0)));
+  EXPECT_EQ(shapeOf(0, 0, 0), glm::dmat3(0.0));
+}
+
+TEST(PointSampling, MisplacedShareIsWhatWouldHaveToMove) {
+  const Corners corners = ball(12);
+  Corners larger = corners;
+  for (glm::vec3& c : larger) c *= 3.0f;
+  EXPECT_NEAR(misplacedShare(corners, larger), 0.0, 1e-6);
+  const Corners pair{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  Corners grown = pair;
+  grown[1].x = 3.0f;  // half and half become three quarters and a quarter
+  EXPECT_NEAR(misplacedShare(pair, grown), 0.25, 1e-6);
+  EXPECT_NEAR(misplacedShare(grown, pair), 0.25, 1e-6);
+  EXPECT_EQ(misplacedShare(pair, Corners(6, glm::vec3(0.0f))), 1.0);
+}
+
 TEST(ShareOut, AddsUpAndFollowsTheWeights) {
   EXPECT_EQ(shareOut(10, {1.0, 1.0, 1.0}), (std::vector<uint32_t>{4, 3, 3}));
   EXPECT_EQ(shareOut(7, {0.0, 5.0, 0.0}), (std::vector<uint32_t>{0, 7, 0}));
