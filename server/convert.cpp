@@ -170,6 +170,7 @@ protocol::Status toWire(const Status& status) {
   wire.leftOut = status.leftOut;
   wire.memory = status.memory;
   for (const StageTime& stage : status.stages) wire.stageMs.emplace_back(stage.name, stage.ms);
+  wire.figures = status.figures;
   return wire;
 }
 

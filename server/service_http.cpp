@@ -112,8 +112,10 @@ std::string Service::metrics() const {
   out.beginGauges("limn_device_memory_bytes", "Device memory by owner.");
   for (const auto& [owner, bytes] : status.memory)
     out.sample("limn_device_memory_bytes", "owner", owner, double(bytes));
-  out.beginGauges("limn_stage_ms", "Time of the last picture by stage [ms].");
+  out.beginGauges("limn_stage_ms", "Time by stage [ms]; build and warmUp of the scene, the others since the restart.");
   for (const StageTime& stage : status.stages) out.sample("limn_stage_ms", "stage", stage.name, stage.ms);
+  out.beginGauges("limn_technique_figure", "About the parts of the technique in use, by name.");
+  for (const auto& [name, value] : status.figures) out.sample("limn_technique_figure", "name", name, value);
   return out.text();
 }
 

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "renderer/base/stage_time.hpp"
 #include "renderer/scene/edit.hpp"
 #include "renderer/scene/gltf_loader.hpp"
 #include "renderer/scene/scene_needs.hpp"
@@ -83,9 +84,6 @@ using Reply = std::variant<EditAck, ErrorReply, DescribeReply, LoadReply, PickRe
 
 enum class Phase : uint32_t { coarse, converging, converged };
 
-/// Where the time of a frame went [ms].
-struct StageTime { std::string name; float ms = 0.0f; };
-
 /// Everything told about a picture.
 struct FrameInfo {
   uint64_t frameId = 0;
@@ -99,7 +97,7 @@ struct FrameInfo {
   float errorLow = 0.0f, errorHigh = 0.0f;  ///< 95 % interval
   float msSinceEdit = 0.0f;            ///< from receipt of the newest applied edit to publication
   uint64_t discardedSamples = 0;       ///< NaN, infinity
-  std::vector<StageTime> stages;
+  std::vector<StageTime> stages;       ///< of this frame alone
   std::vector<Origin> applied;         ///< newest applied seq of every client that has edited
 };
 
@@ -123,7 +121,8 @@ struct Status {
   std::string technique, device;
   std::vector<std::string> ran, leftOut;              ///< SceneNeeds at work
   std::vector<std::pair<std::string, uint64_t>> memory;  ///< bytes by owner
-  std::vector<StageTime> stages;
+  std::vector<StageTime> stages;       ///< build and warmUp of the session; the others since the restart
+  std::vector<std::pair<std::string, double>> figures;   ///< Technique::figures()
 };
 
 }  // namespace limn

@@ -104,6 +104,8 @@ void Session::Impl::refreshStatus() {
   status.memory.assign(device.memory().byOwner().begin(), device.memory().byOwner().end());
   status.stages = stages;
   status.stages.push_back({"sample", float(sampledSeconds * 1e3)});
+  for (StageTime& stage : technique->stages()) status.stages.push_back(std::move(stage));
+  status.figures = technique->figures();
   replies.setStatus(status);
 }
 

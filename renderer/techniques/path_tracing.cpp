@@ -36,6 +36,9 @@ class PathTracing final : public Technique {
   double secondsToGrid(uint32_t stride) const override;
   std::vector<std::string> ran() const override { return m_ran; }
   std::vector<std::string> leftOut() const override { return m_leftOut; }
+  std::vector<StageTime> stages() const override {
+    return {{"select", float(m_selectSeconds * 1e3)}, {"trace", float(m_traceSeconds * 1e3)}};
+  }
   uint64_t raysTraced() const override { return m_raysTraced; }
   uint64_t discardedSamples() const override { return m_discarded; }
 
@@ -64,6 +67,7 @@ class PathTracing final : public Technique {
   uint32_t m_pass = 0, m_cursor = 0, m_passPixels = 0, m_passSamples = 0, m_samplesDone = 0;
   bool m_passOpen = false, m_converged = false;
   uint64_t m_raysTraced = 0, m_discarded = 0;
+  double m_selectSeconds = 0.0, m_traceSeconds = 0.0;  ///< since the restart
 };
 
 Result<void> PathTracing::prepare(const TechniqueContext& context, const SceneNeeds& needs, bool mayCompile) {
@@ -134,6 +138,7 @@ std::vector<vk::Binding> PathTracing::bindings(const TechniqueContext& context, 
 Result<void> PathTracing::restart(const TechniqueContext& context, CostClass) {
   m_pass = m_cursor = m_samplesDone = 0;
   m_passOpen = m_converged = false;
+  m_selectSeconds = m_traceSeconds = 0.0;
   return gpu::runNow(context.device, [&](vk::CommandRecorder& r) { context.film.recordClear(r); });
 }
 
@@ -143,11 +148,13 @@ Result<void> PathTracing::beginPass(const TechniqueContext& context) {
   m_passPixels = context.film.pixelCount();
   m_passSamples = std::min(samplesOfPass(m_pass), sampleLimit(context) - m_samplesDone);
   if (!m_adaptive || m_samplesDone < m_minSamples) return {};
+  const double begin = nowSeconds();
   auto error = context.statistics.estimate(context.device, context.film);
   if (!error) return error.error();
   auto active = context.statistics.selectPixels(context.device, context.film, m_active, m_minSamples, m_noiseThreshold, error->meanValue);
   if (!active) return active.error();
   m_passPixels = *active;
+  m_selectSeconds += nowSeconds() - begin;
   return {};
 }
 
@@ -161,7 +168,9 @@ Result<void> PathTracing::dispatch(const TechniqueContext& context, uint32_t cou
     m_trace->record(r, all, push, workgroups(count));
   });
   if (!done) return done;
-  m_rate.measured(uint64_t(count) * m_passSamples, nowSeconds() - begin);
+  const double seconds = nowSeconds() - begin;
+  m_rate.measured(uint64_t(count) * m_passSamples, seconds);
+  m_traceSeconds += seconds;
   readCounters();
   return {};
 }

@@ -99,11 +99,16 @@ Result<void> PointProjectionTechnique::makeBuffers(const TechniqueContext& conte
 
 // Points move with what they sit on, and everything that light meets or comes from changes what they carry.
 Result<void> PointProjectionTechnique::updatePoints(const TechniqueContext& context) {
+  m_pointTimes.clear();
   if (m_pointsKnown && m_lightingRevision == context.lightingRevision) return {};
   auto updated = m_points.update(context.device, context.description, context.scene, m_settings.points, m_settings.clusters, kPointSeed);
   if (!updated) return updated.error();
   m_work.blocksSampled += updated->sampledBlocks;
   m_work.pointUpdates += updated->changed;
+  m_pointTimes = {{"sample points", float(updated->sampleMs)},
+                  {"move points", float(updated->moveMs)},
+                  {"cluster points", float(updated->clusterMs)},
+                  {"upload points", float(updated->uploadMs)}};
   m_lightingRevision = context.lightingRevision;
   m_pointsKnown = true;
   forgetLight();
@@ -172,6 +177,7 @@ Result<void> PointProjectionTechnique::prepare(const TechniqueContext& context, 
 
 Result<void> PointProjectionTechnique::restart(const TechniqueContext& context, CostClass) {
   m_tasks.clear();
+  m_tasks.forgetTimes();
   m_pass = m_shaded = 0;
   m_fillStride = PixelOrder::kStrides[0];
   m_converged = m_preview = false;
@@ -254,6 +260,18 @@ std::vector<std::string> PointProjectionTechnique::leftOut() const {
   if (!m_needs.alpha) names.emplace_back("alpha tests");
   if (!m_needs.textures) names.emplace_back("textures");
   return names;
+}
+
+std::vector<StageTime> PointProjectionTechnique::stages() const {
+  std::vector<StageTime> all = m_pointTimes;
+  all.insert(all.end(), m_tasks.times().begin(), m_tasks.times().end());
+  return all;
+}
+
+std::vector<std::pair<std::string, double>> PointProjectionTechnique::figures() const {
+  return {{"points", double(m_points.count())},
+          {"pointClusters", double(m_points.clusterCount())},
+          {"pointRelativeRadius", m_points.relativeRadius()}};
 }
 
 std::unique_ptr<Technique> makePointProjection() { return std::make_unique<PointProjectionTechnique>(); }

@@ -45,6 +45,8 @@ class PointProjectionTechnique final : public Technique {
   double secondsToGrid(uint32_t stride) const override;
   std::vector<std::string> ran() const override;
   std::vector<std::string> leftOut() const override;
+  std::vector<StageTime> stages() const override;
+  std::vector<std::pair<std::string, double>> figures() const override;
   uint64_t raysTraced() const override;
   uint64_t discardedSamples() const override;
   const vk::Buffer* indirect() const override { return &m_indirect; }
@@ -135,6 +137,7 @@ class PointProjectionTechnique final : public Technique {
   uint32_t m_fillStride = 8;
   bool m_converged = false;
   PointProjectionWork m_work;
+  std::vector<StageTime> m_pointTimes;  ///< of the points as they were made for this picture; empty: they were kept
 };
 
 }  // namespace limn

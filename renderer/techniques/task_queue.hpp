@@ -2,9 +2,12 @@
 #include <algorithm>
 #include <deque>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "renderer/base/clock.hpp"
 #include "renderer/base/result.hpp"
+#include "renderer/base/stage_time.hpp"
 #include "renderer/techniques/work_rate.hpp"
 
 namespace limn {
@@ -36,11 +39,29 @@ class TaskQueue {
   const char* current() const { return m_tasks.empty() ? "" : m_tasks.front().name; }
   size_t left() const { return m_tasks.size(); }
 
+  /// Time spent on tasks of each name since forgetTimes(), in the order in which they first ran.
+  const std::vector<StageTime>& times() const { return m_times; }
+  void forgetTimes() { m_times.clear(); }
+
   /// Works for about `seconds`, less when the queue ends or a task does.
   Result<void> advance(const TechniqueContext& context, double seconds) {
     if (m_tasks.empty()) return {};
-    Task& task = m_tasks.front();
     const double start = nowSeconds();
+    float& spent = timeOf(current());
+    auto done = workOnFirst(context, seconds, start);
+    spent += float((nowSeconds() - start) * 1e3);
+    return done;
+  }
+
+ private:
+  float& timeOf(const char* name) {
+    for (StageTime& time : m_times)
+      if (time.name == name) return time.ms;
+    return m_times.emplace_back(StageTime{name, 0.0f}).ms;
+  }
+
+  Result<void> workOnFirst(const TechniqueContext& context, double seconds, double start) {
+    Task& task = m_tasks.front();
     if (!m_begun) {
       auto items = task.begin(context);
       if (!items) return items.error();
@@ -57,7 +78,6 @@ class TaskQueue {
     return {};
   }
 
- private:
   Result<void> piece(const TechniqueContext& context, Task& task, double seconds) {
     const uint64_t fits = std::max<uint64_t>(task.rate->itemsIn(seconds), task.leastItems);
     const uint32_t count = uint32_t(std::min<uint64_t>(fits, m_items - m_cursor));
@@ -69,6 +89,7 @@ class TaskQueue {
   }
 
   std::deque<Task> m_tasks;
+  std::vector<StageTime> m_times;
   bool m_begun = false;
   uint32_t m_items = 0, m_cursor = 0;
 };

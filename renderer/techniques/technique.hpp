@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/base/stage_time.hpp"
 #include "renderer/film/film.hpp"
 #include "renderer/film/film_statistics.hpp"
 #include "renderer/gpu/device_scene.hpp"
@@ -60,6 +61,10 @@ class Technique {
   /// Passes of work that ran, and those that the scene did not need, for the statistics.
   virtual std::vector<std::string> ran() const = 0;
   virtual std::vector<std::string> leftOut() const = 0;
+  /// Where the time since the restart went, by kind of work, prepare() before it included; what an edit kept is not in it.
+  virtual std::vector<StageTime> stages() const = 0;
+  /// Facts about the parts at work by name, as "pointRelativeRadius"; the technique's header says what they are.
+  virtual std::vector<std::pair<std::string, double>> figures() const { return {}; }
   /// A shared::IndirectTexel of every pixel, whose states say which pixels were gathered for themselves; null where all are.
   virtual const vk::Buffer* indirect() const { return nullptr; }
   /// Rays traced and samples discarded since the process began.

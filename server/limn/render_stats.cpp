@@ -67,6 +67,12 @@ void writeReport(protocol::JsonWriter& json, const LoadReport& report) {
   json.field("notes", report.notes);
 }
 
+std::vector<std::pair<std::string, float>> stageTimes(const Status& status) {
+  std::vector<std::pair<std::string, float>> times;
+  for (const StageTime& stage : status.stages) times.emplace_back(stage.name, stage.ms);
+  return times;
+}
+
 void writeQuality(protocol::JsonWriter& json, const RenderStats& stats) {
   json.field("steps", stats.outcome.state.steps);
   json.field("samples", sampleRangeText(stats.samples));
@@ -102,6 +108,8 @@ std::string renderStatsJson(const RenderStats& stats) {
   json.field("ran", stats.status.ran);
   json.field("leftOut", stats.status.leftOut);
   json.field("memory", stats.status.memory);
+  json.field("stageMs", stageTimes(stats.status));
+  json.field("figures", stats.status.figures);
   writeReport(json, stats.report);
   json.endObject();
   return json.take() + "\n";

@@ -36,6 +36,9 @@ TEST(Conversation, statusTellsTheDeviceAndTheClientsShare) {
   EXPECT_EQ(status.clients, 1u);
   EXPECT_EQ(status.technique, "fake");
   EXPECT_EQ(status.phase, protocol::Phase::converged);
+  ASSERT_EQ(status.figures.size(), 1u);
+  EXPECT_EQ(status.figures[0].first, "points");
+  EXPECT_EQ(status.figures[0].second, 262144.0);
 }
 
 TEST(Conversation, pingIsAnsweredWithThePongOfItsSeq) {

@@ -69,6 +69,7 @@ void FakeRenderer::run() {
     status.technique = "fake";
     status.stages = {{"trace", 1.5f}, {"resolve", 0.25f}};
     status.memory = {{"film", 4096}};
+    status.figures = {{"points", 262144.0}};
     status.editsApplied = m_edits;
     status.restarts = m_restarts;
     status.framesPublished = m_published;

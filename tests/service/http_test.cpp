@@ -226,6 +226,7 @@ TEST(Http, metricsAreWellFormed) {
   EXPECT_GT(samples, 40u);
   EXPECT_EQ(server.metric("limn_clients"), 1.0);
   EXPECT_GE(server.metric("limn_frames_sent_total"), 1.0);
+  EXPECT_EQ(server.metric("limn_technique_figure{name=\"points\"}"), 262144.0);
 }
 
 TEST(Http, moreConnectionsThanAllowedAreRefusedAtOnce) {

@@ -267,6 +267,7 @@ class Client {
       leftOut: ['textures', 'specular chains'],
       memory: { film: 4_915_200, scene: 1_204_000, bvh: 822_000 },
       stageMs: { trace: 9, resolve: 2.5 },
+      figures: { points: 262_144, pointRelativeRadius: 0.71 },
       clients: clients.size,
       framesSent: this.frameId,
       framesReplaced: this.replaced,

@@ -98,6 +98,8 @@ TEST_F(Render, StatisticsCheckpointsAndLayersAreAsAsked) {
   EXPECT_FALSE(stats->find("ran")->array()->empty());
   EXPECT_FALSE(stats->find("leftOut")->array()->empty());
   EXPECT_FALSE(stats->find("memory")->object()->empty());
+  EXPECT_GT(*stats->find("stageMs")->find("trace")->number(), 0.0);
+  EXPECT_TRUE(stats->find("figures")->object()->empty());
   const protocol::JsonValue::Array& checkpoints = *stats->find("checkpoints")->array();
   ASSERT_EQ(checkpoints.size(), 2u);
   EXPECT_LT(*checkpoints[0].find("seconds")->number(), *checkpoints[1].find("seconds")->number());

@@ -30,6 +30,8 @@ export class StatsPanel {
   private readonly leftOut = h('p', { class: 'facts' });
   private readonly device = h('p', { class: 'facts' });
   private readonly memory = h('p', { class: 'facts' });
+  private readonly times = h('p', { class: 'facts' });
+  private readonly figures = h('p', { class: 'facts' });
 
   constructor(
     root: HTMLElement,
@@ -52,6 +54,8 @@ export class StatsPanel {
         { class: 'more', open: true },
         h('summary', {}, 'Where the time went'),
         this.stages,
+        this.times,
+        this.figures,
         this.ran,
         this.leftOut,
         this.memory,
@@ -113,6 +117,12 @@ export class StatsPanel {
     setText(this.leftOut, status.leftOut.length > 0 ? `Left out: ${status.leftOut.join(', ')}` : '');
     const memory = Object.entries(status.memory).map(([owner, bytes]) => `${owner} ${formatBytes(bytes)}`);
     setText(this.memory, memory.length > 0 ? `Memory: ${memory.join(', ')}` : '');
+    const times = Object.entries(status.stageMs).map(([stage, ms]) => `${stage} ${formatMilliseconds(ms)}`);
+    setText(this.times, times.length > 0 ? `Since the restart: ${times.join(', ')}` : '');
+    const figures = Object.entries(status.figures).map(
+      ([name, value]) => `${name} ${Number.isInteger(value) ? formatCount(value) : formatNumber(value, 3)}`,
+    );
+    setText(this.figures, figures.length > 0 ? `Figures: ${figures.join(', ')}` : '');
   }
 
   private showStages(header: FrameHeader, hello: ServerHello): void {

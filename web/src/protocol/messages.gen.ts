@@ -408,7 +408,8 @@ export interface Status {
   ran: string[];  /** passes that this scene needs */
   leftOut: string[];  /** passes that it does not need */
   memory: { [name: string]: number };  /** on the device, by owner [byte] */
-  stageMs: { [name: string]: number };  /** of the last frame, by stage [ms] */
+  stageMs: { [name: string]: number };  /** by stage: build and warmUp of the scene, the others since the restart [ms] */
+  figures: { [name: string]: number };  /** about the parts of the technique in use, by name */
   clients: number;  /** connected */
   framesSent: number;  /** to this client */
   framesReplaced: number;  /** by newer ones before they were sent to this client */
@@ -884,6 +885,7 @@ const kStructs: { [name: string]: readonly Field[] } = {
     { name: "leftOut", type: "string[]" },
     { name: "memory", type: "u53{}" },
     { name: "stageMs", type: "f32{}" },
+    { name: "figures", type: "f64{}" },
     { name: "clients", type: "u32" },
     { name: "framesSent", type: "u53" },
     { name: "framesReplaced", type: "u53" },
