@@ -237,7 +237,7 @@ TEST(PointProjection, LobesOfPointsTurnWithTheShadingNormal) {
     Gatherer g(turned, 64, 1.0, 1.0f, nullptr, std::vector<shared::PointLobes>(4096, lobes));
     const float shadowing = c / std::sqrt(0.25f + 0.75f * c * c);  // height-correlated Smith at two equal angles
     const float expected = 0.125f + shadowing / (float(kPi) * 0.25f * 4.0f * c * c);
-    EXPECT_NEAR(g.microBuffers(kBruteForce)[16 * 32 + 16].g, expected, 0.02f * expected) << side;
+    EXPECT_NEAR(g.microBuffers(kBruteForce)[16 * 32 + 16].g, expected, 0.03f * expected) << side;
   }
 }
 
