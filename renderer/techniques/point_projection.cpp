@@ -1,5 +1,6 @@
 #include "renderer/techniques/point_projection.hpp"
 
+#include <algorithm>
 #include <bit>
 
 #include "renderer/techniques/point_projection_impl.hpp"
@@ -13,6 +14,13 @@ namespace {
 
 /// Points stay where they are when the picture's seed changes.
 constexpr uint32_t kPointSeed = 1;
+
+/// Stages of one name are one.
+void addTime(std::vector<StageTime>& all, const StageTime& time) {
+  const auto same = std::find_if(all.begin(), all.end(), [&](const StageTime& other) { return other.name == time.name; });
+  if (same == all.end()) all.push_back(time);
+  else same->ms += time.ms;
+}
 
 std::vector<uint32_t> constantsOf(const SceneNeeds& needs) {
   std::vector<uint32_t> words = gpu::needsConstants(needs);
@@ -178,6 +186,7 @@ Result<void> PointProjectionTechnique::prepare(const TechniqueContext& context, 
 Result<void> PointProjectionTechnique::restart(const TechniqueContext& context, CostClass) {
   m_tasks.clear();
   m_tasks.forgetTimes();
+  m_lighting.forgetTimes();
   m_pass = m_shaded = 0;
   m_fillStride = PixelOrder::kStrides[0];
   m_converged = m_preview = false;
@@ -264,7 +273,8 @@ std::vector<std::string> PointProjectionTechnique::leftOut() const {
 
 std::vector<StageTime> PointProjectionTechnique::stages() const {
   std::vector<StageTime> all = m_pointTimes;
-  all.insert(all.end(), m_tasks.times().begin(), m_tasks.times().end());
+  for (const TaskQueue* queue : {&m_tasks, &m_lighting})
+    for (const StageTime& time : queue->times()) addTime(all, time);
   return all;
 }
 

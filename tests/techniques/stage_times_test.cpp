@@ -26,7 +26,7 @@ void expectTimed(const Status& status, const std::vector<const char*>& names, bo
 SessionConfig fewPoints() { return pointProjection(48, 32, 2, 0, {{"points", 16384.0}}); }
 
 const std::vector<const char*> kPoints{"sample points", "move points", "cluster points", "upload points"};
-const std::vector<const char*> kLighting{"relight", "bounce", "spread"};
+const std::vector<const char*> kLighting{"relight", "paths", "spread"};
 const std::vector<const char*> kPicture{"sites", "start grid", "level", "interpolate", "filter", "shade"};
 
 TEST(StageTimes, EveryTechniqueTellsAndNoneTwice) {
