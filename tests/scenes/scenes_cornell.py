@@ -78,9 +78,9 @@ def wall_materials():
     }
 
 
-def cornell(name, area_light=True, overrides=None, blocks=True, extra=()):
+def cornell(name, area_light=True, overrides=None, blocks=True, extra=(), lamp=lambda corners: shapes.quad(*corners)):
     """A Cornell box. overrides: material for a wall's or block's name; extra: further (name, mesh, material,
-    translation)."""
+    translation); lamp: mesh of the area light from its corners."""
     scene = Builder(name)
     palette = {key: scene.add_material(m) for key, m in wall_materials().items()}
     overrides = {key: scene.add_material(m) for key, m in (overrides or {}).items()}
@@ -93,7 +93,7 @@ def cornell(name, area_light=True, overrides=None, blocks=True, extra=()):
         scene.add_object(part, mesh, scene.add_material(material), translation=translation)
     if area_light:
         scene.add_object(
-            "Light", shapes.quad(*metres(_LIGHT)), scene.add_material(materials.emitter("Light", EMISSION))
+            "Light", lamp(metres(_LIGHT)), scene.add_material(materials.emitter("Light", EMISSION))
         )
     else:
         scene.add_light("Light", "point", POINT_INTENSITY, POINT_COLOUR, POINT_POSITION)

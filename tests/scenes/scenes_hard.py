@@ -1,10 +1,11 @@
 """The Cornell box under a point light, made awkward in one way each. Unless a scene says otherwise its picture is
-cornell-point's."""
+cornell-point's. tests/techniques/hard_cases_box_test.cpp holds every technique to that."""
 
 import functools
 import math
 
 import materials
+import scenes_cornell
 import shapes
 import vec
 from gltf_writer import Builder
@@ -184,6 +185,24 @@ def bad_normals():
     return cornell("hard-bad-normals", spoil)
 
 
+def split_emitters():
+    """cornell-box with its lamp as 8x8 cells of unequal size, two triangles each: the picture of cornell-box."""
+
+    def split(light):
+        (x1, y, z0), (x0, _, z1) = light[0], light[2]
+        steps = [k * k / 64.0 for k in range(9)]
+        xs, zs = [x0 + (x1 - x0) * t for t in steps], [z0 + (z1 - z0) * t for t in steps]
+        return merged(
+            [
+                shapes.quad((b, y, c), (b, y, d), (a, y, d), (a, y, c))
+                for a, b in zip(xs, xs[1:])
+                for c, d in zip(zs, zs[1:])
+            ]
+        )
+
+    return scenes_cornell.cornell("hard-split-emitters", lamp=split)
+
+
 def tiny_light():
     """A sphere of radius 0.5 mm that sends 1e6 W/sr, in place of the point: a picture like cornell-point's, 4e6
     times brighter."""
@@ -246,6 +265,7 @@ SCENES = {
     "hard-far-node": far_node,
     "hard-rotated": rotated,
     "hard-permuted": permuted,
+    "hard-split-emitters": split_emitters,
     "hard-doubled-vertices": doubled_vertices,
     "hard-coplanar": coplanar,
     "hard-degenerate": degenerate,

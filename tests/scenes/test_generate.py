@@ -33,6 +33,7 @@ TRIANGLES = {
     "analytic-quad": 4,
     "analytic-sphere": 2 * 128 * 63,
     "hard-coplanar": 60,
+    "hard-split-emitters": 36 + 128,
     "hard-degenerate": 30 + 7 * 4,
     "million-instances": 1000 + 2 + 2,
 }

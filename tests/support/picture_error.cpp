@@ -35,8 +35,8 @@ constexpr uint32_t kTile = 16;
 
 struct Sums {
   double difference = 0.0, variance = 0.0, scale = 0.0;
-  double deviation() const {
-    const double error = std::sqrt(variance) + 1e-5 * scale;  // what both know only to rounding is equal
+  double deviation(double rounding) const {
+    const double error = std::sqrt(variance) + rounding * scale;
     return error > 0.0 ? std::abs(difference) / error : 0.0;
   }
 };
@@ -52,7 +52,7 @@ double relMseOf(const FilmImage& picture, const PicturePair& reference, const st
   return meanQuotient(x, x, dataOf(reference.a, layer), dataOf(reference.b, layer));
 }
 
-Deviation deviationOf(const PicturePair& pair, const PicturePair& reference, const std::string& layer) {
+Deviation deviationOf(const PicturePair& pair, const PicturePair& reference, const std::string& layer, double rounding) {
   const std::vector<float>*all[] = {&dataOf(pair.a, layer), &dataOf(pair.b, layer), &dataOf(reference.a, layer),
                                     &dataOf(reference.b, layer)};
   const uint32_t width = pair.a.width, tilesX = (width + kTile - 1) / kTile, tilesY = (pair.a.height + kTile - 1) / kTile;
@@ -67,8 +67,8 @@ Deviation deviationOf(const PicturePair& pair, const PicturePair& reference, con
       s->scale += 0.5 * std::abs(v[2] + v[3]);
     }
   }
-  Deviation d{whole.deviation(), 0.0};
-  for (const Sums& s : tiles) d.worstTile = std::max(d.worstTile, s.deviation());
+  Deviation d{whole.deviation(rounding), 0.0, tiles.size()};
+  for (const Sums& s : tiles) d.worstTile = std::max(d.worstTile, s.deviation(rounding));
   return d;
 }
 

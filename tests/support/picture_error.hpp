@@ -18,11 +18,12 @@ double biasOf(const PicturePair& pair, const PicturePair& reference, const std::
 double relMseOf(const FilmImage& picture, const PicturePair& reference, const std::string& layer);
 
 /// How far the means of a layer lie apart, in standard errors of their difference: of the whole picture, and the largest of
-/// all tiles of 16x16 pixels.
+/// all tiles of 16x16 pixels. `rounding` is the relative error that both may have without noise.
 struct Deviation {
   double whole = 0.0, worstTile = 0.0;
+  size_t tiles = 0;
 };
-Deviation deviationOf(const PicturePair& pair, const PicturePair& reference, const std::string& layer);
+Deviation deviationOf(const PicturePair& pair, const PicturePair& reference, const std::string& layer, double rounding = 1e-5);
 
 double meanOf(const FilmImage& picture, const std::string& layer);
 double largestOf(const FilmImage& picture, const std::string& layer);

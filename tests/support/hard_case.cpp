@@ -1,0 +1,108 @@
+#include "tests/support/hard_case.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/statistics.hpp"
+
+namespace limn::test {
+namespace {
+
+/// More cases than there are: all of the suite's comparisons share one level.
+constexpr size_t kMostCases = 50;
+constexpr double kSigmas = 3.0;
+
+// What renderer/README.md says of biased techniques.
+constexpr double kBiasedRelMse = 0.05;
+constexpr double kBiasedEnergy = 1.1;
+constexpr double kBiasedLeak = 0.01;
+
+constexpr double kDiscarded = 1e-5, kFireflies = 1e-4, kFireflyFactor = 20.0;
+
+/// The deviation that is as unlikely among `tests` comparisons as one of kSigmas in a single one. [Bonferroni]
+double sigmasOf(size_t tests) {
+  const double level = normalTails(kSigmas) / double(tests);
+  double low = kSigmas, high = 20.0;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (normalTails(middle) > level ? low : high) = middle;
+  }
+  return high;
+}
+
+double pairMean(const PicturePair& pair) { return 0.5 * (meanOf(pair.a, "beauty") + meanOf(pair.b, "beauty")); }
+
+/// Relative standard error of the quotient of the two means.
+double errorOfQuotient(const PicturePair& pair, const PicturePair& truth) {
+  const Deviation d = deviationOf(pair, truth, "beauty", 0.0);
+  const double quotient = pairMean(pair) / pairMean(truth);
+  return d.whole > 0.0 ? std::abs(quotient - 1.0) / d.whole : 0.0;
+}
+
+const KnownMiss* knownOf(const HardCase& hard, const std::string& technique) {
+  for (const KnownMiss& miss : hard.known)
+    if (miss.technique == technique) return &miss;
+  return nullptr;
+}
+
+HardFigure figure(double value, double general, double known) { return {value, general, known > 0.0 ? known : general}; }
+
+bool isBlack(const HardCase& hard) { return hard.radiance == 0.0; }
+
+HardFigure deviation(const HardCase& hard, HardCell& cell, const PicturePair& pair, const PicturePair& reference, double known) {
+  if (!cell.biased) {
+    const Deviation d = deviationOf(pair, reference, "beauty", hard.rounding);
+    cell.unit = "sigma";
+    return figure(std::max(d.whole, d.worstTile), sigmasOf((d.tiles + 1) * kMostCases), known);
+  }
+  cell.unit = isBlack(hard) ? "leak" : "relMSE";
+  if (isBlack(hard)) return figure(cell.largest / hard.outside, kBiasedLeak, known);
+  return figure(std::max(0.0, biasOf(pair, reference, "beauty")), kBiasedRelMse + hard.rounding, known);
+}
+
+HardFigure energy(const HardCase& hard, const HardCell& cell, const PicturePair& pair, const PicturePair& truth, double known) {
+  const double most = hard.ceiling.value_or(isBlack(hard) ? hard.outside : pairMean(truth));
+  double allowed = cell.biased ? kBiasedEnergy : 1.0 + hard.rounding;
+  if (!cell.biased && !isBlack(hard)) allowed += sigmasOf(kMostCases) * errorOfQuotient(pair, truth);
+  return figure(pairMean(pair) / most, allowed, known);
+}
+
+double fireflyShare(const PicturePair& pair, const PicturePair& truth) {
+  int count = 0;
+  for (const FilmImage* picture : {&pair.a, &pair.b}) count += firefliesOf(*picture, truth.a, kFireflyFactor);
+  return double(count) / (2.0 * pair.a.width * pair.a.height);
+}
+
+}  // namespace
+
+HardCell judge(const HardCase& hard, const TechniqueInfo& technique, const HardPictures& pictures, const PicturePair& reference,
+               const PicturePair& truth) {
+  const PicturePair& pair = pictures.pair;
+  const KnownMiss* known = knownOf(hard, technique.name);
+  HardCell cell;
+  cell.name = hard.name;
+  cell.claim = hard.claim;
+  cell.technique = technique.name;
+  cell.biased = technique.biased;
+  cell.causticsAllowed = hard.caustics;
+  cell.sound = isSound(pair.a) && isSound(pair.b);
+  cell.largest = std::max(largestOf(pair.a, "beauty"), largestOf(pair.b, "beauty"));
+  cell.deviation = deviation(hard, cell, pair, reference, known ? known->deviation : 0.0);
+  cell.energy = energy(hard, cell, pair, truth, known ? known->energy : 0.0);
+  cell.discarded = figure(double(pictures.discarded) / double(pictures.taken), kDiscarded, 0.0);
+  const double mostFireflies = hard.caustics ? 1.0 : kFireflies;
+  cell.fireflies = figure(fireflyShare(pair, truth), mostFireflies, known ? known->fireflies : 0.0);
+  if (known) cell.reason = known->reason;
+  return cell;
+}
+
+PicturePair constantPictures(uint32_t width, uint32_t height, double radiance) {
+  PicturePair pair;
+  pair.a.width = width;
+  pair.a.height = height;
+  pair.a.layers = {{"beauty", 3, std::vector<float>(size_t(width) * height * 3, float(radiance))}};
+  pair.b = pair.a;
+  return pair;
+}
+
+}  // namespace limn::test

@@ -1,0 +1,5 @@
+#include "tests/techniques/hard_cases.hpp"
+namespace limn::test {
+const std::vector<HardCase>& hardCases() { static const std::vector<HardCase> kCases; return kCases; }
+const char* hardCaseGroup() { return "light"; }
+}
