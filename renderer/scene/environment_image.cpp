@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 
 #include "renderer/scene/asset_files.hpp"
+#include "renderer/scene/clean_environment.hpp"
 #include "renderer/scene/gltf_loader.hpp"
 #include "renderer/scene/oiio_input.hpp"
 
@@ -53,7 +53,7 @@ std::array<int, 3> colorChannels(const OIIO::ImageSpec& spec) {
   return found;
 }
 
-bool readRows(OIIO::ImageInput& input, Image& image, uint64_t& broken) {
+bool readRows(OIIO::ImageInput& input, Image& image) {
   const OIIO::ImageSpec spec = input.spec();
   const std::array<int, 3> channels = colorChannels(spec);
   const size_t stride = size_t(spec.nchannels);
@@ -61,12 +61,7 @@ bool readRows(OIIO::ImageInput& input, Image& image, uint64_t& broken) {
   if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, all.data())) return false;
   image.rgbaF.resize(size_t(spec.width) * size_t(spec.height) * 4);
   for (size_t i = 0; i < image.rgbaF.size() / 4; ++i) {
-    for (size_t c = 0; c < 3; ++c) {
-      const float v = all[i * stride + size_t(channels[c])];
-      const bool good = std::isfinite(v) && v >= 0.0f;
-      broken += !good;
-      image.rgbaF[i * 4 + c] = good ? v : 0.0f;
-    }
+    for (size_t c = 0; c < 3; ++c) image.rgbaF[i * 4 + c] = all[i * stride + size_t(channels[c])];
     image.rgbaF[i * 4 + 3] = 1.0f;
   }
   return true;
@@ -97,11 +92,9 @@ Result<Image> load(const std::filesystem::path& file, const LoadLimits& limits, 
   image.name = file.filename().string();
   image.width = uint32_t((*input)->spec().width);
   image.height = uint32_t((*input)->spec().height);
-  uint64_t broken = 0;
-  if (!readRows(**input, image, broken))
+  if (!readRows(**input, image))
     return Error{"bad-file", "the image cannot be decoded: " + oiioMessage(**input), ""};
-  if (broken > 0)
-    notes.push_back(std::to_string(broken) + " values of the environment that were not finite or negative became 0");
+  noteCleaned(cleanRadiance(image), notes);
   return image;
 }
 

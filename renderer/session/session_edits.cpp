@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "renderer/base/clock.hpp"
+#include "renderer/scene/clean_environment.hpp"
 #include "renderer/session/session_impl.hpp"
 
 namespace limn {
@@ -142,6 +143,7 @@ Result<void> Session::Impl::handle(LoadRequest& request) {
   const double begin = nowSeconds();
   Scene before = std::exchange(scene, std::move(request.loaded->scene));
   LoadReport reportBefore = std::exchange(report, std::move(request.loaded->report));
+  cleanEnvironment(scene, report.notes);
   ChangeSet all;
   all.everything = true;
   if (auto synced = syncScene(all); !synced) {

@@ -3,6 +3,7 @@
 
 #include "renderer/base/clock.hpp"
 #include "renderer/base/log.hpp"
+#include "renderer/scene/clean_environment.hpp"
 #include "renderer/session/session_impl.hpp"
 #include "renderer/vk/transfer.hpp"
 #include "shaders/shared/bindings.h"
@@ -32,6 +33,7 @@ Result<void> Session::Impl::init(Scene newScene, LoadReport newReport, const Ses
   config = newConfig;
   scene = std::move(newScene);
   report = std::move(newReport);
+  cleanEnvironment(scene, report.notes);
   auto cameraBuffer = smallBuffer(device, sizeof(shared::CameraData), vk::MemoryKind::deviceLocal, "session.camera");
   if (!cameraBuffer) return cameraBuffer.error();
   camera = cameraBuffer.take();
