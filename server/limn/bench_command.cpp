@@ -67,6 +67,11 @@ Result<void> measure(BenchResults& results) {
   if (!peers) return peers.error();
   if (peers->empty())
     results.absent.push_back("No other renderer's pictures were given with --pictures; tests/bench/peers makes some.");
+  Result<std::vector<HardCell>> hardCases = readHardCases(options.hardCases);
+  if (!hardCases) return hardCases.error();
+  results.hardCases = hardCases.take();
+  if (results.hardCases.empty())
+    results.absent.push_back("The hard cases are absent: --hard-cases takes the file that the tests leave behind.");
   vk::DeviceOptions deviceOptions;
   deviceOptions.cacheDir = cacheDirectory();
   const Result<std::unique_ptr<vk::Device>> device = vk::Device::open(deviceOptions);

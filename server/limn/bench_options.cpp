@@ -138,7 +138,9 @@ Result<void> readPlaces(const Arguments& arguments, BenchOptions& options) {
   options.output = arguments.text("output");
   options.references = arguments.text("references", (fs::path(options.output) / "references").string());
   options.pictures = arguments.text("pictures");
-  if (!options.pictures.empty() && !isFile(options.pictures)) return Error{"io", "no such file", options.pictures};
+  options.hardCases = arguments.text("hard-cases");
+  for (const std::string& file : {options.pictures, options.hardCases})
+    if (!file.empty() && !isFile(file)) return Error{"io", "no such file", file};
   return {};
 }
 
@@ -174,6 +176,7 @@ CommandSpec benchSpec() {
            {"references", "DIR", "where references are kept and looked for (default: OUTPUT/references)"},
            {"reference-seconds", "S", "most time for one scene's reference (default: 200)"},
            {"pictures", "LIST.csv", "another renderer's pictures, lines of scene,name,seconds,file.exr: more curves"},
+           {"hard-cases", "FILE.json", "what the tests left in BUILD/hard_cases.json: a table of hard cases"},
            {"growth", "", "also time per step and memory against triangles, lights and pixels, of made scenes"}}};
 }
 

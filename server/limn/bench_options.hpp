@@ -30,6 +30,7 @@ struct BenchOptions {
   std::vector<Budget> budgets;         ///< ascending
   std::string output, references;      ///< directories
   std::string pictures;                ///< list of another renderer's pictures; empty: none
+  std::string hardCases;               ///< what the tests measured on hard cases; empty: nothing
   uint32_t width = 256, height = 256;  ///< [pixel]
   uint32_t seeds = 3;
   double referenceSeconds = 200.0;     ///< most time for one scene's reference [s]

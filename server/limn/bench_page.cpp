@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "renderer/film/file_bytes.hpp"
+#include "server/limn/bench_html.hpp"
 
 namespace limn::bench {
 namespace {
@@ -30,30 +30,6 @@ const std::string kEstimates =
     "<h2>What the film says of its own error</h2>\n<p>Of 95 % intervals 90 to 98 % should hold the true error, and the "
     "median of estimate over error should lie within 0.8 and 1.25. Left out are errors that are not five times over "
     "the reference's own noise: it cannot judge them.</p>\n";
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) safe += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
-  return safe;
-}
-
-std::string number(double value, const char* format = "%.3g") {
-  if (!std::isfinite(value)) return "–";
-  char text[48];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-std::string marked(const std::string& text, bool bad) { return bad ? "<span class=\"bad\">" + text + "</span>" : text; }
-
-/// Cells are HTML already.
-std::string row(const std::vector<std::string>& cells, const char* tag = "td") {
-  std::string line = "<tr>";
-  const std::string open = "<" + std::string(tag) + ">", close = "</" + std::string(tag) + ">";
-  for (const std::string& cell : cells) line += open + cell + close;
-  return line + "</tr>\n";
-}
-std::string header(const std::vector<std::string>& cells) { return "<table>\n" + row(cells, "th"); }
 
 std::string figure(const std::string& png, const std::string& caption) {
   if (png.empty()) return "";
@@ -211,6 +187,7 @@ std::string resultsPage(const BenchResults& results, const std::string& director
   text += plot(directory, "errors", "relMSE over seconds") + timesTable(results);
   text += kConvergence + slopesTable(results) + plot(directory, "samples", "relMSE over samples");
   text += kEstimates + calibrationTable(results) + plot(directory, "calibration", "estimated over true relMSE");
+  text += hardCasesSection(results.hardCases);
   for (const SceneResult& scene : results.scenes) text += sceneSection(scene, directory);
   return text + growthSection(results, directory) + "</body></html>\n";
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "server/limn/bench_hard_cases.hpp"
 #include "server/limn/bench_run.hpp"
 #include "server/limn/bench_statistics.hpp"
 
@@ -66,6 +67,7 @@ struct BenchResults {
   std::vector<SceneResult> scenes;
   std::vector<TechniqueCalibration> calibrations;
   std::vector<Growth> growth;
+  std::vector<HardCell> hardCases;
   std::vector<std::string> absent;     ///< what could not be done, and why; one sentence each
 };
 

@@ -182,6 +182,30 @@ void writeGrowth(JsonWriter& json, const Growth& growth) {
   json.endObject();
 }
 
+void writeHardFigure(JsonWriter& json, const char* name, const HardFigure& figure) {
+  json.key(name);
+  json.beginObject();
+  json.field("value", figure.value);
+  json.field("bound", figure.bound);
+  json.field("good", figure.good);
+  json.endObject();
+}
+
+void writeHardCell(JsonWriter& json, const HardCell& cell) {
+  json.beginObject();
+  json.field("case", cell.name);
+  json.field("technique", cell.technique);
+  json.field("good", cell.good);
+  json.field("sound", cell.sound);
+  json.field("unit", cell.unit);
+  writeHardFigure(json, "deviation", cell.deviation);
+  writeHardFigure(json, "energy", cell.energy);
+  writeHardFigure(json, "discarded", cell.discarded);
+  writeHardFigure(json, "fireflies", cell.fireflies);
+  json.field("reason", cell.reason);
+  json.endObject();
+}
+
 template <class List, class Write>
 void writeList(JsonWriter& json, const char* name, const List& list, Write write) {
   json.key(name);
@@ -226,6 +250,7 @@ std::string resultsJson(const BenchResults& results) {
     out.endObject();
   });
   writeList(json, "growth", results.growth, writeGrowth);
+  writeList(json, "hardCases", results.hardCases, writeHardCell);
   json.endObject();
   return json.take() + "\n";
 }

@@ -166,6 +166,41 @@ TEST_F(Bench, AnotherRenderersPicturesAreMeasuredToo) {
   EXPECT_THAT(refused.err, HasSubstr("line 2"));
 }
 
+/// One good cell and one that breaks its promise of energy.
+std::string hardCasesJson() {
+  const auto figure = [](const char* name, double value, double bound) {
+    return std::string("\"") + name + "\":{\"value\":" + std::to_string(value) + ",\"general\":" +
+           std::to_string(bound) + ",\"good\":" + (value <= bound ? "true" : "false") + "}";
+  };
+  const auto cell = [&](const char* technique, double energy) {
+    return std::string("{\"case\":\"twice <the> size\",\"claim\":\"looks the same\",\"technique\":\"") +
+           technique + "\",\"unit\":\"sigma\",\"reason\":\"light is lost\",\"sound\":true,\"good\":" +
+           (energy <= 1 ? "true" : "false") + "," + figure("deviation", 2, 4.5) + "," + figure("energy", energy, 1) +
+           "," + figure("discarded", 0, 1e-5) + "," + figure("fireflies", 0, 1e-4) + "}";
+  };
+  return "{\"cells\":[" + cell("path-tracing", 0.5) + "," + cell("point-projection", 1.5) + "]}";
+}
+
+TEST_F(Bench, HardCasesAreATableWhereBadCellsAreMarked) {
+  std::ofstream(file("hard.json")) << hardCasesJson();
+  const std::vector<std::string> flags = {"--scenes", kScene, "--steps", "2", "--seeds", "1",
+                                          "--hard-cases", file("hard.json")};
+  const test::ProgramRun done = run("hard", flags);
+  ASSERT_EQ(done.exitCode, 0) << done.err;
+  const std::string page = test::readText(file("hard/index.html"));
+  EXPECT_THAT(page, HasSubstr("1 of 2 cells keep every promise"));
+  EXPECT_THAT(page, HasSubstr("<b>twice &lt;the> size</b><br>looks the same"));
+  EXPECT_THAT(page, HasSubstr("<br>energy 0.5 (≤ 1)"));
+  EXPECT_THAT(page, HasSubstr("<span class=\"bad\">energy 1.5 (≤ 1)</span>"));
+  EXPECT_THAT(page, HasSubstr("light is lost"));
+  EXPECT_THAT(test::readText(file("hard/results.json")), HasSubstr("\"hardCases\":[{\"case\":\"twice <the> size\""));
+
+  std::ofstream(file("hard.json")) << "{\"cells\":[{\"case\":\"alone\"}]}";
+  const test::ProgramRun refused = run("hard", flags);
+  EXPECT_EQ(refused.exitCode, 1);
+  EXPECT_THAT(refused.err, HasSubstr("#/cells/0"));
+}
+
 TEST_F(Bench, WrongUsageExits64WithOneLine) {
   for (const std::vector<std::string>& flags : std::vector<std::vector<std::string>>{
            {"--scenes", kScene, "--nonsense"},
@@ -187,6 +222,7 @@ TEST_F(Bench, WhatIsNotThereExits1WithOneLine) {
                                              {"--scenes", kScene, "--techniques", "magic"},
                                              {"--scenes", kScene, "--set", "path-tracing.magic=1"},
                                              {"--scenes", kScene, "--set", "path-tracing.maxBounces=-1"},
+                                             {"--scenes", kScene, "--hard-cases", "nowhere.json"},
                                              {"--scenes", kScene, "--pictures", "nowhere.csv"}}) {
     const test::ProgramRun done = run("absent", flags);
     EXPECT_EQ(done.exitCode, 1) << flags.back();
