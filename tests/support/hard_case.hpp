@@ -13,7 +13,7 @@ namespace limn::test {
 
 /// A promise that a technique is known to break in one scene: the bounds it keeps there, and the reason. Such a cell stays marked.
 struct KnownMiss {
-  std::string technique;             ///< name
+  std::string technique;             ///< name; empty: every one
   std::string reason;                ///< one sentence, for the table
   double deviation = 0.0;            ///< bound in place of the general one; 0: the general one
   double energy = 0.0;
@@ -34,6 +34,7 @@ struct HardCase {
   double outside = 1.0;              ///< of a picture that must be black: the radiance that could leak in [W·sr⁻¹·m⁻²]
   uint32_t bounces = 4;
   bool caustics = false;             ///< fireflies are counted and not judged
+  bool rare = false;                 ///< light is found too rarely for the noise of a block to be told: the mean alone is compared
   std::vector<KnownMiss> known;
 };
 
@@ -53,7 +54,7 @@ struct HardFigure {
 struct HardCell {
   std::string name, claim, technique;
   bool biased = false, sound = false, causticsAllowed = false;
-  HardFigure deviation;              ///< unbiased: [standard errors], the worst of all blocks; biased: relMSE without noise, or leak
+  HardFigure deviation;              ///< of an unbiased technique the worst of all blocks, of a biased one without noise
   std::string unit;                  ///< of the deviation: "sigma", "relMSE", "leak"
   HardFigure energy;                 ///< mean over that of the truth
   HardFigure discarded;              ///< share of the samples

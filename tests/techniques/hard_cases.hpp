@@ -27,7 +27,7 @@ inline Scene generatedScene(const std::string& name) {
 /// session, so that its pipelines are made once.
 class HardCases : public testing::TestWithParam<std::pair<size_t, size_t>> {
  protected:
-  static constexpr uint32_t kWidth = 48, kHeight = 36, kSamples = 64;
+  static constexpr uint32_t kWidth = 48, kHeight = 36, kSamples = 32;
 
   static void TearDownTestSuite() {
     s_sessions.clear();
@@ -59,7 +59,7 @@ class HardCases : public testing::TestWithParam<std::pair<size_t, size_t>> {
     return kept->second;
   }
 
-  /// Two pictures, of `seed` and the next.
+  /// Two pictures, of `seed` and the next; both together have 64 samples of a pixel.
   static HardPictures take(const TechniqueInfo& technique, const Scene& scene, uint32_t bounces, uint32_t seed) {
     HardPictures pictures;
     pictures.pair.a = take(technique, scene, bounces, seed, pictures);

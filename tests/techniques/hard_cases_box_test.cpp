@@ -4,7 +4,8 @@
 namespace limn::test {
 namespace {
 
-HardCase boxCase(const std::string& name, const std::string& claim, const std::string& file, const std::string& twin = "cornell-point") {
+HardCase boxCase(const std::string& name, const std::string& claim, const std::string& file,
+                 const std::string& twin = "cornell-point") {
   HardCase hard;
   hard.name = name;
   hard.claim = claim;
