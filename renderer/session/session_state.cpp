@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <cmath>
 
 #include "renderer/base/clock.hpp"
 #include "renderer/base/log.hpp"
+#include "renderer/gpu/camera.hpp"
 #include "renderer/scene/clean_environment.hpp"
 #include "renderer/session/session_impl.hpp"
 #include "renderer/vk/transfer.hpp"
@@ -121,23 +121,7 @@ Result<void> Session::Impl::updateTracer(const gpu::SyncReport& synced) {
 }
 
 Result<void> Session::Impl::writeCamera() {
-  const View& view = scene.view;
-  const glm::dvec3 forward = glm::normalize(view.target - view.eye);
-  glm::dvec3 right = glm::cross(forward, view.up);
-  if (!(glm::length(right) > 1e-9)) right = glm::cross(forward, std::abs(forward.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0));
-  right = glm::normalize(right);
-  const glm::dvec3 up = glm::cross(right, forward);
-  const double halfHeight = view.lens.perspective ? std::tan(view.lens.yfov * 0.5) : double(view.lens.ymag);
-  const double halfWidth = halfHeight * config.width / config.height;
-  shared::CameraData data{};
-  data.eyeR = glm::vec3(view.eye - mirror.renderOrigin());
-  data.clipNear = view.lens.znear;
-  data.right = glm::vec3(right * halfWidth);
-  data.perspective = view.lens.perspective ? 1 : 0;
-  data.up = glm::vec3(up * halfHeight);
-  data.width = config.width;
-  data.forward = glm::vec3(forward);
-  data.height = config.height;
+  const shared::CameraData data = gpu::cameraData(scene.view, mirror.renderOrigin(), config.width, config.height);
   return vk::uploadArray(device, camera, std::span<const shared::CameraData>(&data, 1));
 }
 

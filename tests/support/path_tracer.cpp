@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "renderer/film/film_statistics.hpp"
+#include "renderer/gpu/camera.hpp"
 #include "renderer/gpu/pass.hpp"
 #include "renderer/techniques/technique.hpp"
 #include "renderer/vk/transfer.hpp"
-#include "shaders/shared/scene_shared.h"
 
 namespace limn::test {
 namespace {
@@ -16,21 +16,6 @@ template <class T>
 T require(Result<T> result) {
   LIMN_CHECK(result.ok());
   return result.take();
-}
-
-shared::CameraData cameraData(const View& view, const glm::dvec3& renderOrigin) {
-  const glm::dvec3 forward = glm::normalize(view.target - view.eye);
-  const glm::dvec3 right = glm::normalize(glm::cross(forward, view.up)), up = glm::cross(right, forward);
-  const double half = view.lens.perspective ? std::tan(view.lens.yfov * 0.5) : double(view.lens.ymag);
-  shared::CameraData data{};
-  data.eyeR = glm::vec3(view.eye - renderOrigin);
-  data.clipNear = view.lens.znear;
-  data.right = glm::vec3(right * half);
-  data.perspective = view.lens.perspective ? 1 : 0;
-  data.up = glm::vec3(up * half);
-  data.width = data.height = PathTracer::kSize;
-  data.forward = glm::vec3(forward);
-  return data;
 }
 
 }  // namespace
@@ -70,7 +55,7 @@ FilmImage PathTracer::render(const Scene& scene, const RenderOptions& options) {
     blocks.push_back({mirror.blocks()[i].corners, mirror.blocks()[i].firstTriangle, mirror.blockNeedsAlpha(i)});
   SceneTracer tracer(options.method);
   require(tracer.update(p.device, blocks, {}));
-  const shared::CameraData camera = cameraData(scene.view, mirror.renderOrigin());
+  const shared::CameraData camera = gpu::cameraData(scene.view, mirror.renderOrigin(), kSize, kSize);
   require(vk::uploadArray(p.device, p.camera, std::span<const shared::CameraData>(&camera, 1)));
 
   const TechniqueContext context{.device = p.device,
