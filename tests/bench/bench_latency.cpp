@@ -1,9 +1,12 @@
-// How long an edit takes to the picture: starts limnd on a scene, edits through a real socket, and waits for the first frame and
-// for the first frame without unfilled pixels that show the edit. A benchmark: run it on an idle machine.
-//   bench_latency [LIMND [SCENE.glb]]
+// How long an edit takes to the picture: starts limnd on a scene, edits through a real socket, and waits for the first
+// frame and for the first frame without unfilled pixels that show the edit. With a technique, which is chosen over the
+// socket, it looks at indirect light alone and also waits for the first frame that is not black. A benchmark: run it on
+// an idle machine.
+//   bench_latency [--technique NAME] [--repetitions N] [LIMND [SCENE.glb]]
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -11,6 +14,7 @@
 
 #include "protocol/client/client.hpp"
 #include "renderer/base/clock.hpp"
+#include "tests/bench/picture_light.hpp"
 #include "tests/service/child_process.hpp"
 
 namespace {
@@ -18,7 +22,12 @@ namespace {
 using namespace limn;
 using namespace limn::protocol;
 
-constexpr int kRepetitions = 40, kWarmUps = 5;
+constexpr int kWarmUps = 5;
+
+struct Options {
+  std::string limnd, scene, technique;  ///< technique: empty leaves the daemon's own, and the view as it is
+  int repetitions = 40;
+};
 
 [[noreturn]] void fail(const std::string& text) {
   std::fprintf(stderr, "bench_latency: %s\n", text.c_str());
@@ -37,27 +46,44 @@ double percentile(std::vector<double> values, double share) {
 }
 
 struct Latencies {
-  std::vector<double> first, full;  ///< [ms]
+  std::vector<double> first, lit, full;  ///< [ms]
 };
 
-/// One edit, and the times until its first frame and its first whole frame arrived.
-void measureOnce(Client& client, const ClientMessage& edit, Latencies* into) {
+/// One edit, and the times until its first frame, its first that is not black, and its first whole one arrived.
+void measureOnce(Client& client, const ClientMessage& edit, bool lookForLight, Latencies& into) {
   const double begin = nowSeconds();
   const uint32_t seq = client.send(edit);
-  ReceivedFrame frame = must(client.frameShowing(seq, 60.0));
-  const double first = frame.receivedAt;
-  while (frame.header.gatheredShare < 1.0f) frame = must(client.frameShowing(seq, 60.0));
-  if (!into) return;
-  into->first.push_back((first - begin) * 1e3);
-  into->full.push_back((frame.receivedAt - begin) * 1e3);
+  std::optional<double> first, lit;
+  for (bool whole = false; !whole || (lookForLight && !lit);) {
+    const ReceivedFrame frame = must(client.frameShowing(seq, 60.0));
+    const double ms = (frame.receivedAt - begin) * 1e3;
+    if (!first) first = ms;
+    if (lookForLight && !lit && must(bench::holdsLight(frame.payload()))) lit = ms;
+    if (!whole && frame.header.gatheredShare >= 1.0f) {
+      whole = true;
+      into.full.push_back(ms);
+    }
+  }
+  into.first.push_back(*first);
+  if (lit) into.lit.push_back(*lit);
 }
 
-Latencies measure(Client& client, const char* name, const std::function<ClientMessage(int)>& edit) {
-  Latencies all;
-  for (int i = 0; i < kWarmUps; ++i) measureOnce(client, edit(i), nullptr);
-  for (int i = 0; i < kRepetitions; ++i) measureOnce(client, edit(kWarmUps + i), &all);
-  std::printf("%-10s first frame: median %6.1f ms, p95 %6.1f ms   whole frame: median %7.1f ms, p95 %7.1f ms\n", name,
-              percentile(all.first, 0.5), percentile(all.first, 0.95), percentile(all.full, 0.5), percentile(all.full, 0.95));
+void printTimes(const char* what, const std::vector<double>& times) {
+  if (times.empty()) return;
+  std::printf("   %s: median %7.1f ms, p95 %7.1f ms", what, percentile(times, 0.5), percentile(times, 0.95));
+}
+
+Latencies measure(Client& client, const Options& options, const char* name,
+                  const std::function<ClientMessage(int)>& edit) {
+  Latencies warmUp, all;
+  const bool lookForLight = !options.technique.empty();
+  for (int i = 0; i < kWarmUps; ++i) measureOnce(client, edit(i), lookForLight, warmUp);
+  for (int i = 0; i < options.repetitions; ++i) measureOnce(client, edit(kWarmUps + i), lookForLight, all);
+  std::printf("%-10s", name);
+  printTimes("first frame", all.first);
+  printTimes("first with indirect light", all.lit);
+  printTimes("whole frame", all.full);
+  std::printf("\n");
   return all;
 }
 
@@ -78,7 +104,8 @@ Ticks ticksOf(pid_t pid) {
     double user = 0.0, system = 0.0;
     rest >> user >> system;
     ticks.all += user + system;
-    const bool renders = name.starts_with("limn-render") || name.starts_with("llvmpipe") || name.starts_with("lavapipe");
+    const bool drivers = name.starts_with("llvmpipe") || name.starts_with("lavapipe");
+    const bool renders = drivers || name.starts_with("limn-render");
     if (renders) ticks.renderer += user + system;
   }
   return ticks;
@@ -108,9 +135,11 @@ void storm(Client& client, const View& view) {
     camera.view = orbited(view, 0.003 * i);
     client.send(camera);
     const double next = begin + (i + 1) / 60.0;
-    while (nowSeconds() < next)
-      if (auto event = client.nextEvent(std::max(0.0, next - nowSeconds())); event && std::holds_alternative<ReceivedFrame>(*event))
-        arrivals.push_back(std::get<ReceivedFrame>(*event).receivedAt);
+    while (nowSeconds() < next) {
+      const auto event = client.nextEvent(std::max(0.0, next - nowSeconds()));
+      const auto* frame = event ? std::get_if<ReceivedFrame>(&*event) : nullptr;
+      if (frame) arrivals.push_back(frame->receivedAt);
+    }
   }
   double gap = 0.0;
   for (size_t i = 1; i < arrivals.size(); ++i) gap = std::max(gap, arrivals[i] - arrivals[i - 1]);
@@ -124,56 +153,107 @@ uint32_t firstMovable(const SceneMessage& scene) {
   fail("the scene has no object to move");
 }
 
-}  // namespace
+/// Chooses the technique and shows what it adds to direct light; waits for the first picture of both.
+void choose(Client& client, const std::string& technique) {
+  TechniqueEdit chosen;
+  chosen.technique = technique;
+  const uint32_t seq = client.send(set(chosen));
+  if (auto done = client.answer<Ack>(seq, 60.0); !done) fail(done.error().text());
+  ResolveEdit shown;
+  shown.view = ResolveView::indirect;
+  must(client.frameShowing(client.send(set(shown)), 60.0));
+}
 
-int main(int argc, char** argv) {
-  const std::filesystem::path here = std::filesystem::canonical(argv[0]).parent_path();
-  const std::string limnd = argc > 1 ? argv[1] : (here / "limnd").string();
-  const std::string scenePath = argc > 2 ? argv[2] : (here.parent_path() / "scenes/demo.glb").string();
-  server::testing::ChildProcess daemon(limnd, {"--scene", scenePath, "--listen", "127.0.0.1:0", "--size", "512x512"});
-  std::string line = daemon.readLine();
-  while (!line.empty() && line.find("http://") == line.npos) line = daemon.readLine();
-  if (line.empty()) fail("limnd did not start");
-  const std::string address = line.substr(line.find("http://") + 7);
+struct Measured {
+  Latencies camera, light, material, transform;
+  double outside = 0.0;  ///< share of processor time that is not the renderer's
+};
 
-  ClientOptions options;
-  options.url = "ws://" + address;
-  options.newestFrameOnly = true;
-  auto client = must(Client::greet(options));
-  const SceneMessage scene = must(client->request<SceneMessage>(Describe{}));
-  if (scene.lights.empty() || scene.materials.empty()) fail("the scene has no punctual light or no material");
+Measured measureEdits(Client& client, const SceneMessage& scene, const Options& options, pid_t daemon) {
   const uint32_t node = firstMovable(scene);
-
-  const Ticks before = ticksOf(daemon.pid());
-  const Latencies camera = measure(*client, "camera", [&](int i) {
+  const Ticks before = ticksOf(daemon);
+  Measured m;
+  m.camera = measure(client, options, "camera", [&](int i) {
     SetCamera edit;
     edit.view = orbited(scene.view, 0.002 * (i + 1));
     return ClientMessage(edit);
   });
-  const Latencies light = measure(*client, "light", [&](int i) {
+  m.light = measure(client, options, "light", [&](int i) {
     LightEdit edit;
     edit.intensity = scene.lights[0].intensity * (1.0f + 0.01f * float(i + 1));
     return set(edit);
   });
-  const Latencies material = measure(*client, "material", [&](int i) {
+  m.material = measure(client, options, "material", [&](int i) {
     MaterialEdit edit;
     edit.baseColor = {0.01f * float(i + 1), 0.4f, 0.2f, 1.0f};
     return set(edit);
   });
-  const Latencies transform = measure(*client, "transform", [&](int i) {
+  m.transform = measure(client, options, "transform", [&](int i) {
     NodeEdit edit;
     edit.node = node;
     edit.translation = scene.nodes[node].translation;
     (*edit.translation)[0] += 0.001 * (i + 1);
     return set(edit);
   });
-  const Ticks after = ticksOf(daemon.pid());
-  storm(*client, scene.view);
-
+  const Ticks after = ticksOf(daemon);
   const double all = after.all - before.all, outside = all - (after.renderer - before.renderer);
+  m.outside = all > 0.0 ? outside / all : 0.0;
+  return m;
+}
+
+void printSummary(const Measured& m, const std::string& technique) {
+  const auto p95 = [](const std::vector<double>& times) { return percentile(times, 0.95); };
+  if (!technique.empty()) {
+    std::printf("technique=%s light_first_p95_ms=%.1f light_indirect_p95_ms=%.1f material_first_p95_ms=%.1f "
+                "material_indirect_p95_ms=%.1f transform_first_p95_ms=%.1f transform_indirect_p95_ms=%.1f\n",
+                technique.c_str(), p95(m.light.first), p95(m.light.lit), p95(m.material.first), p95(m.material.lit),
+                p95(m.transform.first), p95(m.transform.lit));
+    return;
+  }
   std::printf("camera_first_p95_ms=%.1f camera_full_p95_ms=%.1f light_first_p95_ms=%.1f material_first_p95_ms=%.1f "
               "transform_first_p95_ms=%.1f outside=%.3f\n",
-              percentile(camera.first, 0.95), percentile(camera.full, 0.95), percentile(light.first, 0.95),
-              percentile(material.first, 0.95), percentile(transform.first, 0.95), all > 0.0 ? outside / all : 0.0);
+              p95(m.camera.first), p95(m.camera.full), p95(m.light.first), p95(m.material.first),
+              p95(m.transform.first), m.outside);
+}
+
+Options readOptions(int argc, char** argv) {
+  const std::filesystem::path here = std::filesystem::canonical(argv[0]).parent_path();
+  Options options{(here / "limnd").string(), (here.parent_path() / "scenes/demo.glb").string(), {}};
+  std::vector<std::string> files;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (!word.starts_with("--")) files.push_back(word);
+    else if (i + 1 == argc) fail(word + " needs a value");
+    else if (word == "--technique") options.technique = argv[++i];
+    else if (word == "--repetitions") options.repetitions = std::max(1, std::atoi(argv[++i]));
+    else fail("unknown argument " + word);
+  }
+  if (!files.empty()) options.limnd = files[0];
+  if (files.size() > 1) options.scene = files[1];
+  return options;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Options options = readOptions(argc, argv);
+  server::testing::ChildProcess daemon(
+      options.limnd, {"--scene", options.scene, "--listen", "127.0.0.1:0", "--size", "512x512"});
+  std::string line = daemon.readLine();
+  while (!line.empty() && line.find("http://") == line.npos) line = daemon.readLine();
+  if (line.empty()) fail("limnd did not start");
+  const std::string address = line.substr(line.find("http://") + 7);
+
+  ClientOptions clientOptions;
+  clientOptions.url = "ws://" + address;
+  clientOptions.newestFrameOnly = true;
+  auto client = must(Client::greet(clientOptions));
+  const SceneMessage scene = must(client->request<SceneMessage>(Describe{}));
+  if (scene.lights.empty() || scene.materials.empty()) fail("the scene has no punctual light or no material");
+  if (!options.technique.empty()) choose(*client, options.technique);
+
+  const Measured measured = measureEdits(*client, scene, options, daemon.pid());
+  storm(*client, scene.view);
+  printSummary(measured, options.technique);
   return 0;
 }

@@ -1,5 +1,5 @@
-// Point projection against truth: micro-buffers against all points, indirect light against paths, and where it gathers as
-// time goes by. Writes pictures, results.json and index.html; bench_projection --help tells the rest.
+// Point projection against truth: micro-buffers against all points, indirect light against paths, and where it gathers
+// as time goes by. Writes pictures, results.json and index.html; bench_projection --help tells the rest.
 #include <cstdio>
 #include <filesystem>
 
@@ -97,8 +97,8 @@ Result<SceneReport> validate(vk::Device& device, const std::string& file, const 
 void print(const SceneReport& scene) {
   std::printf("%s\n", scene.name.c_str());
   for (const GatherError& e : scene.microBuffers.errors)
-    std::printf("  %-32s relMSE %.2e, irradiance %.2e, %.1f %% empty\n", e.way.c_str(), e.texels, e.irradiance,
-                100.0 * e.holes);
+    std::printf("  %-32s relMSE %.2e, relative square %.2e, irradiance %.2e, %.1f %% empty\n", e.way.c_str(), e.texels,
+                e.square, e.irradiance, 100.0 * e.holes);
   for (const LightReport& l : scene.light)
     std::printf("  %u bounces, filter of %u: relMSE %.2e (%.2e with every quotient), energy %.3f\n", l.bounces,
                 l.filterSize, l.relMse, l.relMseAll, l.energy);

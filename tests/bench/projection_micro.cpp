@@ -87,6 +87,16 @@ RadianceImage rowOf(const std::vector<glm::vec3>& light) {
   return image;
 }
 
+double relativeSquareOf(const RadianceImage& image, const RadianceImage& reference) {
+  double difference = 0.0, square = 0.0;
+  for (size_t i = 0; i < image.values.size(); ++i) {
+    const double r = reference.values[i], d = image.values[i] - r;
+    difference += d * d;
+    square += r * r;
+  }
+  return square > 0.0 ? difference / square : 0.0;
+}
+
 double holesOf(const std::vector<glm::vec4>& texels, const std::vector<glm::vec4>& reference) {
   size_t covered = 0, empty = 0;
   for (size_t i = 0; i < texels.size(); ++i) {
@@ -118,8 +128,8 @@ Result<GatherError> errorOf(const Way& way, const Gathered& gathered, const Gath
   const auto ofTexels = compareImages(texels.view(), {truth.view(), {}, {}});
   const auto ofLight = compareImages(light.view(), {trueLight.view(), {}, {}});
   if (!ofTexels || !ofLight) return ofTexels ? ofLight.error() : ofTexels.error();
-  return GatherError{way.name, ofTexels->relMse, ofTexels->relMseAll, ofLight->relMseAll,
-                     holesOf(gathered.texels, reference.texels)};
+  return GatherError{way.name, ofTexels->relMse, ofTexels->relMseAll, relativeSquareOf(texels, truth),
+                     ofLight->relMseAll, holesOf(gathered.texels, reference.texels)};
 }
 
 Result<void> measureErrors(const LitScene& scene, uint32_t projections, MicroBufferReport& report) {
@@ -198,7 +208,7 @@ Result<Picture> markNamedPixels(const RadianceImage& beauty, const std::string& 
   RadianceImage marked = enlarged(beauty, kPictureEnlarged);
   std::string caption = "1 to 5: ";
   for (const NamedPixel& pixel : namedPixels(sceneName)) {
-    frame(marked, int(pixel.u * marked.width), int(pixel.v * marked.height), glm::vec3(0.0f, 1.0f / float(exposure), 0.0f));
+    frame(marked, int(pixel.u * marked.width), int(pixel.v * marked.height), {0.0f, float(1.0 / exposure), 0.0f});
     caption += (caption.ends_with(' ') ? "" : ", ") + std::string(pixel.name);
   }
   return pictureOf(sceneName + "-pixels.png", caption, marked, exposure);

@@ -5,8 +5,8 @@
 
 namespace limn::projection {
 
-/// Micro-buffers of five named pixels of a scene as pictures, and errors over a grid of pixels, of every way of choosing
-/// points and splatting them against all points. Light at the points is direct. The named pixels of scenes that are not
+/// Micro-buffers of five named pixels of a scene as pictures, and errors over a grid of pixels, of every way of
+/// choosing points and splatting them against all points. Light at the points is direct. The named pixels of scenes that are not
 /// known lie in a cross. Errors: those of the device, "io".
 Result<MicroBufferReport> reportMicroBuffers(const LitScene& scene, const std::string& sceneName,
                                              const ValidationOptions& options);

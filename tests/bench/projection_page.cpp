@@ -19,11 +19,11 @@ constexpr const char* kMicroText =
     "points; by importance with adaptive splats; at random with adaptive splats; by importance with splats of 1, 2 and "
     "3 texels. Blue sees nothing. [Maletz et al., figs. 7 and 9]</p>\n";
 constexpr const char* kGatherHead =
-    "<tr><th>against all points</th><th>relMSE</th><th>with every quotient</th><th>relMSE of irradiance</th>"
-    "<th>texels left empty</th></tr>\n";
+    "<tr><th>against all points</th><th>relMSE</th><th>with every quotient</th>"
+    "<th>mean square over that of the reference</th><th>relMSE of irradiance</th><th>texels left empty</th></tr>\n";
 constexpr const char* kLightText =
-    "<h3>Indirect light against paths</h3>\n<p>Indirect light alone; relMSE as <code>limn compare --halves</code> takes "
-    "it, so that the noise of the paths adds nothing. [fig. 8]</p>\n";
+    "<h3>Indirect light against paths</h3>\n<p>Indirect light alone; relMSE as <code>limn compare --halves</code> "
+    "takes it, so that the noise of the paths adds nothing. [fig. 8]</p>\n";
 constexpr const char* kLightHead =
     "<tr><th>bounces</th><th>bounces of paths</th><th>filter</th><th>relMSE</th><th>with every quotient</th>"
     "<th>energy over that of paths</th><th>noise of paths</th></tr>\n";
@@ -54,7 +54,8 @@ std::string microSection(const MicroBufferReport& report) {
   text += "<p>Errors over the " + std::to_string(report.gridPixels) + " pixels of a grid that see a surface:</p>\n";
   text += std::string("<table>\n") + kGatherHead;
   for (const GatherError& e : report.errors)
-    text += row({e.way, number(e.texels), number(e.texelsAll), number(e.irradiance), number(100.0 * e.holes) + " %"});
+    text += row({e.way, number(e.texels), number(e.texelsAll), number(e.square), number(e.irradiance),
+                 number(100.0 * e.holes) + " %"});
   return text + "</table>\n";
 }
 

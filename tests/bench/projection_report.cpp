@@ -26,6 +26,7 @@ void writeGather(JsonWriter& json, const GatherError& error) {
   json.field("way", error.way);
   json.field("relMse", error.texels);
   json.field("relMseAll", error.texelsAll);
+  json.field("relativeSquare", error.square);
   json.field("irradianceRelMse", error.irradiance);
   json.field("holes", error.holes);
 }

@@ -29,6 +29,7 @@ struct GatherError {
   std::string way;
   double texels = 0.0;      ///< relMSE of their radiance
   double texelsAll = 0.0;   ///< the same with every quotient
+  double square = 0.0;      ///< mean square of the difference over that of the reference: dark texels do not weigh more
   double irradiance = 0.0;  ///< relMSE of what they bring to the pixels
   double holes = 0.0;       ///< share of the texels that see something in the reference and nothing here
 };

@@ -24,8 +24,8 @@ class LitScene {
   /// Whether a pixel sees a surface that gathers.
   bool gathersAt(uint32_t pixel) const { return m_visible[pixel]; }
 
-  /// Micro-buffers of pixels one after the other, kMicroSide² texels each, row by row: radiance [W·sr⁻¹·m⁻²], and in w 1
-  /// where something is seen. `projections` as in shared::PointProjectionPush.
+  /// Micro-buffers of pixels one after the other, kMicroSide² texels each, row by row: radiance [W·sr⁻¹·m⁻²], and in w
+  /// 1 where something is seen. `projections` as in shared::PointProjectionPush.
   Result<std::vector<glm::vec4>> microBuffers(const std::vector<uint32_t>& pixels, const GatherVariant& variant,
                                               uint32_t projections) const;
   /// Irradiance over pi [W·sr⁻¹·m⁻²] of the same micro-buffers.
