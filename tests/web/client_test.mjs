@@ -122,6 +122,27 @@ test('picking opens the material and the object, in the panel and in the list', 
   assert.match(await ledger(), /Picked: Ball, middle, made of Brass/);
 });
 
+test('Control moves what is picked, by hand and by keys, and leaves the camera', async () => {
+  const start = await pose();
+  const translation = () => sceneOf(page).then((scene) => scene.nodes[2].translation);
+  const before = await translation();
+  await page.keyboard.down('Control');
+  await drag(page, [0.5, 0.52], [0.6, 0.52]);
+  const dragged = await translation();
+  await page.keyboard.press('ArrowUp');
+  await page.keyboard.up('Control');
+  const [x, y] = await translation();
+  assert.ok(dragged[0] > before[0] + 0.1, `from ${before} to ${dragged}`);
+  assert.ok(y > dragged[1] && x === dragged[0], `from ${dragged} to ${[x, y]}`);
+  assert.deepEqual((await pose()).eye, start.eye);
+  await settle(page, 2);
+  assert.deepEqual(server.world.scene.nodes[2].translation, await translation());
+  const field = page.locator('#inspector').getByLabel('Translation X', { exact: true });
+  await field.fill(String(before[0]));
+  await field.press('Enter');
+  await settle(page, 1);
+});
+
 test('the list is walked with keys and opens the same panel', async () => {
   await page.locator('[role=treeitem][data-key="light:0"]').focus();
   await page.keyboard.press('ArrowDown');

@@ -1,5 +1,6 @@
 /** Puts the house together: stream worker, model, camera, panels. */
 import { bindControls } from './camera/controls';
+import { ObjectMover } from './camera/object_mover';
 import { CameraRig } from './camera/rig';
 import { boundsOf, poseFromView, poseOfCamera, viewFromPose } from './camera/scene_pose';
 import type { ConnectionState, FrameReport, Outgoing } from './channel';
@@ -46,6 +47,10 @@ const rig = new CameraRig({
   requestFrame,
   reducedMotion: () => matchMedia('(prefers-reduced-motion: reduce)').matches,
 });
+const mover = new ObjectMover(model, rig, edit, (why) => {
+  ledger.say(why, true);
+  announcer.say(why);
+});
 const link = new StreamLink(byId<HTMLCanvasElement>('picture'), socketUrl(), tokenOfAddress(), {
   onState,
   onMessage,
@@ -77,6 +82,7 @@ bindControls(stage.element, {
   orbit: (yaw, pitch) => whenConnected(() => rig.orbit(yaw, pitch)),
   pan: (right, up) => whenConnected(() => rig.pan(right, up)),
   dolly: (factor) => whenConnected(() => rig.dolly(factor)),
+  moveObject: (right, up) => whenConnected(() => mover.move(right, up)),
   frame: () => whenConnected(() => rig.frame()),
   centerPicked: () => whenConnected(() => rig.centerPicked()),
   reset: () => whenConnected(() => rig.reset()),

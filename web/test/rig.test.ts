@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { handleKey, type GestureTarget } from '../src/camera/controls';
+import { handleKey, handleObjectKey, type GestureTarget } from '../src/camera/controls';
 import type { Pose } from '../src/camera/orbit';
 import { CameraRig } from '../src/camera/rig';
 
@@ -96,6 +96,7 @@ describe('handleKey', () => {
     pictureHeight: () => 100,
     orbit: note('orbit'),
     pan: note('pan'),
+    moveObject: note('move'),
     dolly: (f) => void calls.push(f < 1 ? 'nearer' : 'farther'),
     click: note('click'),
     frame: note('frame'),
@@ -118,4 +119,10 @@ describe('handleKey', () => {
     expect(calls.map((c) => c.replace(/-0/g, '0'))).toEqual([expected]);
   });
   it('leaves other keys alone', () => expect(handleKey('x', false, target)).toBe(false));
+  it('moves the selected object by arrows alone', () => {
+    calls.length = 0;
+    expect(handleObjectKey('ArrowUp', target)).toBe(true);
+    expect(handleObjectKey('+', target)).toBe(false);
+    expect(calls).toEqual(['move 0 1']);
+  });
 });

@@ -5,6 +5,8 @@ export interface GestureTarget {
   orbit(yaw: number, pitch: number): void;
   pan(right: number, up: number): void;
   dolly(factor: number): void;
+  /** Moves the selected object, in shares of the picture's height. */
+  moveObject(right: number, up: number): void;
   click(clientX: number, clientY: number): void;
   frame(): void;
   centerPicked(): void;
@@ -17,8 +19,21 @@ const kWheelRate = 0.0015;
 const kKeyAngle = (5 * Math.PI) / 180;
 const kKeyPan = 0.05;
 const kKeyDolly = 0.9;
+const kKeyMove = 0.02;
 
 type Point = { x: number; y: number };
+/** What a drag with one pointer does. */
+type Grip = 'orbit' | 'pan' | 'object';
+
+const kArrows: Record<string, readonly [number, number]> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, 1],
+  ArrowDown: [0, -1],
+};
+
+/** Control, or the command key of a Mac: hands and keys are then for the selected object. */
+const isForObject = (event: PointerEvent | KeyboardEvent): boolean => event.ctrlKey || event.metaKey;
 
 /** Binds mouse, touch and keys of `element` to `target`. Keys act only while the element has the focus. */
 export function bindControls(element: HTMLElement, target: GestureTarget): void {
@@ -37,21 +52,25 @@ export function bindControls(element: HTMLElement, target: GestureTarget): void 
   element.addEventListener('blur', () => element.classList.remove('by-pointer'));
   element.addEventListener('keydown', (event) => {
     element.classList.remove('by-pointer');
-    if (!event.altKey && !event.ctrlKey && !event.metaKey && handleKey(event.key, event.shiftKey, target)) {
-      event.preventDefault();
-    }
+    if (event.altKey) return;
+    const meant = isForObject(event)
+      ? handleObjectKey(event.key, target)
+      : handleKey(event.key, event.shiftKey, target);
+    if (meant) event.preventDefault();
   });
+}
+
+/** Carries out a key that is held with Control; false when it means nothing to the selected object. */
+export function handleObjectKey(key: string, target: GestureTarget): boolean {
+  const arrow = kArrows[key];
+  if (!arrow) return false;
+  target.moveObject(arrow[0] * kKeyMove, arrow[1] * kKeyMove);
+  return true;
 }
 
 /** Carries out one key; false when it means nothing to the camera. */
 export function handleKey(key: string, shift: boolean, target: GestureTarget): boolean {
-  const arrows: Record<string, [number, number]> = {
-    ArrowLeft: [-1, 0],
-    ArrowRight: [1, 0],
-    ArrowUp: [0, 1],
-    ArrowDown: [0, -1],
-  };
-  const arrow = arrows[key];
+  const arrow = kArrows[key];
   if (arrow) {
     // An arrow moves the camera that way round the point; with Shift it moves the picture's window.
     if (shift) target.pan(-arrow[0] * kKeyPan, -arrow[1] * kKeyPan);
@@ -88,12 +107,12 @@ export function handleKey(key: string, shift: boolean, target: GestureTarget): b
 function bindPointers(element: HTMLElement, target: GestureTarget): void {
   const pointers = new Map<number, Point>();
   let travelled = 0;
-  let panning = false;
+  let grip: Grip = 'orbit';
 
   element.addEventListener('pointerdown', (event) => {
     if (pointers.size === 0) {
       travelled = 0;
-      panning = event.button === 2 || event.button === 1 || event.shiftKey;
+      grip = gripOf(event);
     } else {
       travelled = Infinity; // a second finger: never a click
     }
@@ -117,7 +136,7 @@ function bindPointers(element: HTMLElement, target: GestureTarget): void {
       travelled = Math.max(travelled, Math.hypot(step.x, step.y));
       // Until it is clear that this is a drag, the picture stays, so that a click does not restart the sampling.
       if (travelled < kClickSlack) return;
-      drag(step, panning, target);
+      drag(step, grip, target);
     }
     pointers.set(event.pointerId, now);
   });
@@ -126,15 +145,21 @@ function bindPointers(element: HTMLElement, target: GestureTarget): void {
     if (!pointers.delete(event.pointerId)) return;
     const isClick = event.type === 'pointerup' && event.button === 0 && travelled < kClickSlack && pointers.size === 0;
     if (isClick) target.click(event.clientX, event.clientY);
-    panning = false;
+    grip = 'orbit';
   };
   element.addEventListener('pointerup', release);
   element.addEventListener('pointercancel', release);
 }
 
-function drag(step: Point, panning: boolean, target: GestureTarget): void {
+function gripOf(event: PointerEvent): Grip {
+  if (event.button === 0 && isForObject(event)) return 'object';
+  return event.button === 2 || event.button === 1 || event.shiftKey ? 'pan' : 'orbit';
+}
+
+function drag(step: Point, grip: Grip, target: GestureTarget): void {
   const height = Math.max(1, target.pictureHeight());
-  if (panning) target.pan(step.x / height, -step.y / height);
+  if (grip === 'object') target.moveObject(step.x / height, -step.y / height);
+  else if (grip === 'pan') target.pan(step.x / height, -step.y / height);
   else target.orbit((-step.x / height) * kRadiansPerHeight, (-step.y / height) * kRadiansPerHeight);
 }
 

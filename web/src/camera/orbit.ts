@@ -67,12 +67,17 @@ export function heightAt(pose: Pose, pivot: Vec3): number {
   return 2 * distance * Math.tan(pose.lens.yfov / 2);
 }
 
-/** Moves the camera so that the picture at `pivot`'s depth follows by (right, up) in shares of the picture's height. */
-export function pan(pose: Pose, pivot: Vec3, right: number, up: number): Pose {
+/** World vector [m] that at `pivot`'s depth covers (right, up) in shares of the picture's height. */
+export function stepInPicture(pose: Pose, pivot: Vec3, right: number, up: number): Vec3 {
   const height = heightAt(pose, pivot);
   const rightDir = rightOf(pose);
   const upDir = cross(rightDir, forwardOf(pose));
-  const move = add(scale(rightDir, -right * height), scale(upDir, -up * height));
+  return add(scale(rightDir, right * height), scale(upDir, up * height));
+}
+
+/** Moves the camera so that the picture at `pivot`'s depth follows by (right, up) in shares of the picture's height. */
+export function pan(pose: Pose, pivot: Vec3, right: number, up: number): Pose {
+  const move = stepInPicture(pose, pivot, -right, -up);
   return { ...pose, eye: add(pose.eye, move), target: add(pose.target, move) };
 }
 

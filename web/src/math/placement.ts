@@ -1,5 +1,5 @@
 import type { SceneMessage, SceneNode } from '../protocol/messages.gen';
-import type { Vec3 } from './vec3';
+import { cross, dot, type Vec3 } from './vec3';
 
 /** Affine map of a node, column-major 3x3 and the origin: world (or parent) from local. */
 export interface Placement {
@@ -16,6 +16,17 @@ export const applyLinear = (p: Placement, v: Vec3): Vec3 => [
   p.x[1] * v[0] + p.y[1] * v[1] + p.z[1] * v[2],
   p.x[2] * v[0] + p.y[2] * v[1] + p.z[2] * v[2],
 ];
+
+/** The v of applyLinear(p, v) = w; null where the map is flat. */
+export function solveLinear(p: Placement, w: Vec3): Vec3 | null {
+  const determinant = dot(p.x, cross(p.y, p.z));
+  if (determinant === 0) return null;
+  return [
+    dot(w, cross(p.y, p.z)) / determinant,
+    dot(p.x, cross(w, p.z)) / determinant,
+    dot(p.x, cross(p.y, w)) / determinant,
+  ];
+}
 
 function compose(outer: Placement, inner: Placement): Placement {
   const o = applyLinear(outer, inner.origin);

@@ -18,7 +18,8 @@ export class Ledger {
 
   constructor(root: HTMLElement) {
     root.append(this.edit, this.figures);
-    setText(this.edit, 'Drag to orbit, right-drag to pan, wheel to come nearer, click to pick');
+    const hands = 'Drag to orbit, right-drag to pan, wheel to come nearer, click to pick, Ctrl-drag to move the picked';
+    setText(this.edit, hands);
   }
 
   showOutcome(outcome: Outcome): void {

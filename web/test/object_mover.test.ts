@@ -1,0 +1,82 @@
+import { describe, expect, it } from 'vitest';
+import { ObjectMover, movedTranslation } from '../src/camera/object_mover';
+import type { Pose } from '../src/camera/orbit';
+import { CameraRig } from '../src/camera/rig';
+import { worldPlacement } from '../src/math/placement';
+import { sub, type Vec3 } from '../src/math/vec3';
+import type { Edit, SceneMessage } from '../src/protocol/messages.gen';
+import { Model, withEdit } from '../src/state/model';
+
+const upright = [0, 0, 0, 1];
+const quarterTurn = [0, 0, Math.SQRT1_2, Math.SQRT1_2];
+const node = (fields: object) => ({ name: '', translation: [0, 0, 0], rotation: upright, scale: [1, 1, 1], ...fields });
+
+const makeScene = () =>
+  ({
+    name: 'test.glb',
+    nodes: [
+      node({ name: 'Turned', translation: [1, 2, 3], rotation: quarterTurn, scale: [2, 3, 4] }),
+      node({ name: 'Inside', parent: 0, translation: [0.5, 0, 0] }),
+      node({ name: 'Matrix', matrix: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] }),
+      node({ name: 'Flat', scale: [1, 0, 1] }),
+      node({ name: 'In the flat one', parent: 3 }),
+    ],
+    materials: [],
+  }) as unknown as SceneMessage;
+
+const pose: Pose = {
+  eye: [0, 0, 5],
+  target: [0, 0, 0],
+  up: [0, 1, 0],
+  lens: { perspective: false, yfov: 1, ymag: 1.5, znear: 0.01 },
+};
+
+describe('movedTranslation', () => {
+  it.each([0, 1])('moves node %i by the step in the world, whatever its parent does', (index) => {
+    const scene = makeScene();
+    const step: Vec3 = [0.3, -0.2, 0.7];
+    const translation = movedTranslation(scene, index, step);
+    const moved = withEdit(scene, { target: 'node', node: index, translation: [...(translation ?? [])] } as Edit);
+    const went = sub(worldPlacement(moved, index).origin, worldPlacement(scene, index).origin);
+    went.forEach((c, i) => expect(c).toBeCloseTo(step[i] ?? NaN, 12));
+  });
+  it('knows no way within a flat space', () => expect(movedTranslation(makeScene(), 4, [0, 1, 0])).toBeNull());
+});
+
+function makeMover() {
+  const model = new Model();
+  const rig = new CameraRig({ send: () => {}, requestFrame: () => {}, reducedMotion: () => true });
+  const edits: Edit[] = [];
+  const refusals: string[] = [];
+  model.setScene(makeScene());
+  rig.adopt(pose, { low: [-1, -1, -1], high: [1, 1, 1] });
+  const edit = (_: string, change: Edit) => {
+    model.applyLocally(change);
+    edits.push(change);
+  };
+  return { model, rig, edits, refusals, mover: new ObjectMover(model, rig, edit, (why) => refusals.push(why)) };
+}
+
+describe('ObjectMover', () => {
+  it('moves what is selected with the pointer, and the point that the camera turns about', () => {
+    const { model, rig, edits, mover } = makeMover();
+    model.select({ kind: 'node', node: 0 });
+    rig.setPivot([0.2, 0, 1]);
+    mover.move(0.5, 0.25);
+    mover.move(0.5, 0);
+    expect(edits.at(-1)).toEqual({ target: 'node', node: 0, translation: [4, 2.75, 3] });
+    expect(rig.pivot()).toEqual([3.2, 0.75, 1]);
+  });
+
+  it('says why nothing moved', () => {
+    const { model, edits, refusals, mover } = makeMover();
+    mover.move(0.1, 0);
+    model.select({ kind: 'node', node: 2 });
+    mover.move(0.1, 0);
+    expect(edits).toEqual([]);
+    expect(refusals).toEqual([
+      'Nothing moved: pick an object first',
+      'Nothing moved: Matrix is placed by a matrix, or in a flat space',
+    ]);
+  });
+});
