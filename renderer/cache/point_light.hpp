@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -93,6 +94,9 @@ class PointLightCache {
   const vk::Buffer& light() const { return m_light; }        ///< shared::PointLight, one a point
   const vk::Buffer& radiance() const { return m_radiance; }  ///< vec4, two a point
   const vk::Buffer& lobes() const { return m_lobes; }        ///< shared::PointLobes
+
+  /// The worse of those that depend on the scene's needs, as of the last prepare().
+  gpu::PipelineVariant pipelines() const { return std::max(m_relight.variant(), m_compose.variant()); }
 
   /// Since the cache was made; up to date once the device has done what was recorded.
   uint64_t raysTraced() const;

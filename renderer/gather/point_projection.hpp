@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "renderer/gpu/tailored_pass.hpp"
@@ -32,6 +33,9 @@ class PointProjection {
   /// No barrier at the end.
   void recordAtPoints(vk::CommandRecorder& recorder, const std::vector<vk::Binding>& bindings,
                       const shared::PointProjectionPush& push) const;
+
+  /// The worse of the two, as of the last prepare().
+  gpu::PipelineVariant pipelines() const { return std::max(m_pixels.variant(), m_points.variant()); }
 
  private:
   gpu::TailoredPass m_pixels, m_points;

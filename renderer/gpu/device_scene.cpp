@@ -10,10 +10,13 @@
 namespace limn::gpu {
 namespace {
 
-vk::BufferDesc describe(const char* name, VkFormat texelFormat = VK_FORMAT_UNDEFINED) {
+/// What a table holds, for the statistics of memory.
+constexpr const char *kScene = "scene", *kTextures = "textures", *kLights = "lights", *kEnvironment = "environment";
+
+vk::BufferDesc describe(const char* owner, const char* name, VkFormat texelFormat = VK_FORMAT_UNDEFINED) {
   vk::BufferDesc desc;
   desc.name = std::string("scene.") + name;
-  desc.owner = "scene";
+  desc.owner = owner;
   desc.texelFormat = texelFormat;
   desc.usage = texelFormat == VK_FORMAT_UNDEFINED ? vk::BufferUsage::storage : vk::BufferUsage::texel;
   return desc;
@@ -43,6 +46,13 @@ std::vector<uint32_t> blocksOfNodes(const std::vector<GeometryBlock>& blocks, co
 
 bool DeviceScene::anyAlpha() const {
   return std::any_of(m_blockAlpha.begin(), m_blockAlpha.end(), [](uint8_t a) { return a != 0; });
+}
+
+uint64_t DeviceScene::hostBytes() const {
+  uint64_t bytes = m_lightTable.lights.size() * sizeof(shared::LightData) + m_lightTable.lightOfTriangle.size() * 4;
+  for (const GeometryBlock& block : m_blocks)
+    bytes += sizeof block + (block.corners.size() + block.positions.size() + block.triangles.size()) * sizeof(glm::vec3);
+  return bytes;
 }
 
 bool DeviceScene::updateOrigin(const Scene& scene) {
@@ -93,12 +103,13 @@ Result<void> DeviceScene::reload(const Scene& scene) {
     block.vertices = {};
   }
   m_triangleCount = triangles.size();
-  if (auto r = replace(m_device, m_triangles, describe("triangles", VK_FORMAT_R32G32B32A32_UINT), triangles); !r) return r;
-  if (auto r = replace(m_device, m_positions, describe("positions", VK_FORMAT_R32G32B32A32_SFLOAT), positions); !r) return r;
-  if (auto r = replace(m_device, m_vertices, describe("vertices", VK_FORMAT_R32G32B32A32_UINT), vertices); !r) return r;
+  constexpr VkFormat kWords = VK_FORMAT_R32G32B32A32_UINT, kFloats = VK_FORMAT_R32G32B32A32_SFLOAT;
+  if (auto r = replace(m_device, m_triangles, describe(kScene, "triangles", kWords), triangles); !r) return r;
+  if (auto r = replace(m_device, m_positions, describe(kScene, "positions", kFloats), positions); !r) return r;
+  if (auto r = replace(m_device, m_vertices, describe(kScene, "vertices", kWords), vertices); !r) return r;
   const TexelHeap heap = buildTexelHeap(scene);
-  if (auto r = replace(m_device, m_images, describe("images"), heap.images); !r) return r;
-  if (auto r = replace(m_device, m_texels, describe("texels", VK_FORMAT_R32_UINT), heap.texels); !r) return r;
+  if (auto r = replace(m_device, m_images, describe(kTextures, "images"), heap.images); !r) return r;
+  if (auto r = replace(m_device, m_texels, describe(kTextures, "texels", VK_FORMAT_R32_UINT), heap.texels); !r) return r;
   if (auto r = writeMaterials(scene); !r) return r;
   if (auto r = writeEnvironment(scene); !r) return r;
   return writeLights(scene);
@@ -129,8 +140,8 @@ Result<void> DeviceScene::writeMaterials(const Scene& scene) {
   for (size_t i = 0; i < m_blocks.size(); ++i)
     m_blockAlpha[i] = m_blocks[i].material > 0 && needsAlphaTest(scene.materials[m_blocks[i].material - 1]);
   const MaterialTable table = buildMaterialTable(scene);
-  if (auto r = replace(m_device, m_textureSlots, describe("textureSlots"), table.slots); !r) return r;
-  return replace(m_device, m_materials, describe("materials"), table.materials);
+  if (auto r = replace(m_device, m_textureSlots, describe(kScene, "textureSlots"), table.slots); !r) return r;
+  return replace(m_device, m_materials, describe(kScene, "materials"), table.materials);
 }
 
 Result<void> DeviceScene::writeEnvironment(const Scene& scene) {
@@ -147,8 +158,10 @@ Result<void> DeviceScene::writeEnvironment(const Scene& scene) {
     for (size_t i = 0; i < texels.size(); ++i)
       texels[i] = {image.rgbaF[4 * i], image.rgbaF[4 * i + 1], image.rgbaF[4 * i + 2], 1.0f};
   }
-  if (auto r = replace(m_device, m_environment, describe("environment", VK_FORMAT_R32G32B32A32_SFLOAT), texels); !r) return r;
-  return replace(m_device, m_environmentTable, describe("environmentTable", VK_FORMAT_R32G32B32A32_UINT), table.entries);
+  const auto ofTexels = describe(kEnvironment, "environment", VK_FORMAT_R32G32B32A32_SFLOAT);
+  if (auto r = replace(m_device, m_environment, ofTexels, texels); !r) return r;
+  const auto ofEntries = describe(kEnvironment, "environmentTable", VK_FORMAT_R32G32B32A32_UINT);
+  return replace(m_device, m_environmentTable, ofEntries, table.entries);
 }
 
 Result<void> DeviceScene::writeLights(const Scene& scene) {
@@ -159,10 +172,10 @@ Result<void> DeviceScene::writeLights(const Scene& scene) {
   m_info.environmentRotation = scene.environment.rotation;
   m_info.sceneRadius = float(m_radius);
   m_info.triangleCount = uint32_t(m_triangleCount);
-  if (auto r = replace(m_device, m_lights, describe("lights"), m_lightTable.lights); !r) return r;
-  if (auto r = replace(m_device, m_triangleLights, describe("triangleLights", VK_FORMAT_R32_UINT), m_lightTable.lightOfTriangle); !r)
-    return r;
-  return replace(m_device, m_sceneInfo, describe("info"), std::vector<shared::SceneInfo>{m_info});
+  if (auto r = replace(m_device, m_lights, describe(kLights, "lights"), m_lightTable.lights); !r) return r;
+  const auto ofTriangles = describe(kLights, "triangleLights", VK_FORMAT_R32_UINT);
+  if (auto r = replace(m_device, m_triangleLights, ofTriangles, m_lightTable.lightOfTriangle); !r) return r;
+  return replace(m_device, m_sceneInfo, describe(kScene, "info"), std::vector<shared::SceneInfo>{m_info});
 }
 
 std::vector<vk::Binding> DeviceScene::bindings() const {

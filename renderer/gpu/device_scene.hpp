@@ -36,6 +36,8 @@ class DeviceScene {
   double radius() const { return m_radius; }
   const std::vector<shared::LightData>& lights() const { return m_lightTable.lights; }
   uint64_t triangleCount() const { return m_triangleCount; }
+  /// Kept on the host of the blocks and lights, to rebuild from [byte].
+  uint64_t hostBytes() const;
 
  private:
   Result<void> reload(const Scene& scene);

@@ -34,12 +34,17 @@ std::vector<float> spreadLuminance(const Image& image) {
 
 }  // namespace
 
+glm::uvec2 environmentCells(const Image& image) {
+  return {std::clamp(image.width, 1u, kMaxWidth), std::clamp(image.height / 2, 1u, kMaxHeight)};
+}
+
 EnvironmentTable buildEnvironmentTable(const Scene& scene) {
   EnvironmentTable table;
   if (scene.environment.image == kNone) return table;
   const Image& image = scene.images[size_t(scene.environment.image)];
-  table.width = std::clamp(image.width, 1u, kMaxWidth);
-  table.height = std::clamp(image.height / 2, 1u, kMaxHeight);
+  const glm::uvec2 cells = environmentCells(image);
+  table.width = cells.x;
+  table.height = cells.y;
   const std::vector<float> luminance = spreadLuminance(image);
 
   std::vector<double> weights(size_t(table.width) * table.height, 0.0);

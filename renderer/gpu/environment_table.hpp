@@ -13,6 +13,8 @@ struct EnvironmentTable {
   uint32_t width = 0, height = 0;    ///< cells; 0: the environment is constant
   std::vector<glm::uvec4> entries;   ///< share bits, alias, probability bits, 0
 };
+/// Cells of the table of an image: columns, rows.
+glm::uvec2 environmentCells(const Image& image);
 EnvironmentTable buildEnvironmentTable(const Scene& scene);
 
 }  // namespace limn::gpu

@@ -74,12 +74,17 @@ void addMaterial(MaterialTable& table, const Material& m, bool vertexColors) {
 
 bool needsAlphaTest(const Material& m) { return m.alphaMode != AlphaMode::opaque; }
 
-TexelHeap buildTexelHeap(const Scene& scene) {
+std::vector<bool> sampledImages(const Scene& scene) {
   std::vector<bool> used(scene.images.size(), false);
   for (const Material& m : scene.materials) {
     for (const TextureRef* slot : slotsOf(m))
       if (slot->present()) used[size_t(slot->image)] = true;
   }
+  return used;
+}
+
+TexelHeap buildTexelHeap(const Scene& scene) {
+  const std::vector<bool> used = sampledImages(scene);
   TexelHeap heap;
   for (size_t i = 0; i < scene.images.size(); ++i) {
     const Image& image = scene.images[i];

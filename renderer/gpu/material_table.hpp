@@ -6,6 +6,9 @@
 
 namespace limn::gpu {
 
+/// One entry an image: whether any material samples it.
+std::vector<bool> sampledImages(const Scene& scene);
+
 /// Where each image's texels begin in the texel heap; images that no material samples have no place (kNoIndex).
 struct TexelHeap {
   std::vector<shared::ImageInfo> images;

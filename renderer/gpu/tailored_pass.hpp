@@ -1,6 +1,7 @@
 #pragma once
 #include "renderer/gpu/needs_constants.hpp"
 #include "renderer/gpu/pass.hpp"
+#include "renderer/gpu/pipeline_variant.hpp"
 
 namespace limn::gpu {
 
@@ -19,7 +20,8 @@ class TailoredPass {
   Result<void> prepare(vk::Device& device, const std::vector<vk::Binding>& like, const SceneNeeds& needs, bool mayCompile) {
     const std::vector<uint32_t> wanted = m_constants(needs);
     const bool stale = !m_tailored || (mayCompile && m_tailoredFor != wanted);
-    m_useGeneral = !stale && !covers(wanted);
+    if (stale || m_tailoredFor == wanted) m_variant = PipelineVariant::tailored;
+    else m_variant = covers(wanted) ? PipelineVariant::superset : PipelineVariant::general;
     if (!stale) return {};
     auto tailored = Pass::create(device, m_shader, like, m_pushConstantBytes, wanted);
     if (!tailored) return tailored.error();
@@ -37,8 +39,9 @@ class TailoredPass {
   }
 
   /// The variant for the scene of the last prepare().
-  const Pass& operator*() const { return m_useGeneral ? m_general : m_tailored; }
+  const Pass& operator*() const { return m_variant == PipelineVariant::general ? m_general : m_tailored; }
   const Pass* operator->() const { return &**this; }
+  PipelineVariant variant() const { return m_variant; }
 
  private:
   bool covers(const std::vector<uint32_t>& wanted) const {
@@ -52,7 +55,7 @@ class TailoredPass {
   Constants m_constants;
   Pass m_general, m_tailored;
   std::vector<uint32_t> m_tailoredFor;
-  bool m_useGeneral = false;
+  PipelineVariant m_variant = PipelineVariant::tailored;
 };
 
 }  // namespace limn::gpu

@@ -49,7 +49,7 @@ void countGeometry(const Scene& scene, LoadReport& report) {
 
 /// Every node's triangles end in the hierarchy by themselves, so a few bytes of nodes can stand for any number of them.
 void checkInstances(const Scene& scene, const LoadLimits& limits, LoadReport& report) {
-  report.instancedTriangles = estimateScene(scene).instancedTriangles;
+  report.instancedTriangles = instancedTriangles(scene);
   if (report.instancedTriangles <= limits.maxTriangles) return;
   gltf::fail("limit",
              std::to_string(report.instancedTriangles) + " triangles over all nodes are more than the limit of " +

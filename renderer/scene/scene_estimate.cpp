@@ -3,12 +3,6 @@
 namespace limn {
 namespace {
 
-// Bytes a flattened triangle: indices, hierarchy triangle (three texels), about one hierarchy node, light index.
-constexpr uint64_t kDeviceTriangle = 16 + 48 + 48 + 4;
-constexpr uint64_t kDeviceVertex = 16 + 32;              // position, packed attributes
-constexpr uint64_t kMirrorTriangle = 36 + 12 + 48 + 48;  // corners, indices, the hierarchy's copy and node
-constexpr uint64_t kMirrorVertex = 12 + 32;
-
 template <class T>
 uint64_t bytesOf(const std::vector<T>& data) {
   return data.size() * sizeof(T);
@@ -19,28 +13,50 @@ uint64_t bytesOf(const Primitive& p) {
          bytesOf(p.uv0) + bytesOf(p.uv1) + bytesOf(p.colors) + bytesOf(p.indices);
 }
 
+bool hasArea(const Primitive& p, size_t triangle) {
+  const glm::dvec3 a(p.positions[p.indices[3 * triangle]]);
+  const glm::dvec3 ab = glm::dvec3(p.positions[p.indices[3 * triangle + 1]]) - a;
+  const glm::dvec3 ac = glm::dvec3(p.positions[p.indices[3 * triangle + 2]]) - a;
+  return glm::cross(ab, ac) != glm::dvec3(0.0);
+}
+
+BlockSize sizeOf(const Primitive& p) {
+  BlockSize size{p.material, p.indices.size() / 3, p.positions.size(), 0};
+  for (size_t t = 0; t < size.triangles; ++t) size.solidTriangles += hasArea(p, t);
+  return size;
+}
+
 }  // namespace
 
-SceneEstimate estimateScene(const Scene& scene) {
-  SceneEstimate estimate;
-  estimate.sceneBytes = bytesOf(scene.materials) + bytesOf(scene.nodes) + bytesOf(scene.lights);
-  for (const Mesh& mesh : scene.meshes) {
-    for (const Primitive& primitive : mesh.primitives) estimate.sceneBytes += bytesOf(primitive);
-  }
-  uint64_t texelBytes = 0;
-  for (const Image& image : scene.images) texelBytes += bytesOf(image.rgba8) + bytesOf(image.rgbaF);
+std::vector<BlockSize> blockSizes(const Scene& scene) {
+  std::vector<std::vector<BlockSize>> ofMesh(scene.meshes.size());
+  for (size_t m = 0; m < scene.meshes.size(); ++m)
+    for (const Primitive& p : scene.meshes[m].primitives)
+      if (!p.indices.empty()) ofMesh[m].push_back(sizeOf(p));
+  std::vector<BlockSize> blocks;
   for (const Node& node : scene.nodes) {
     if (node.mesh == kNone) continue;
-    for (const Primitive& primitive : scene.meshes[size_t(node.mesh)].primitives) {
-      estimate.instancedTriangles += primitive.indices.size() / 3;
-      estimate.instancedVertices += primitive.positions.size();
-    }
+    const std::vector<BlockSize>& shown = ofMesh[size_t(node.mesh)];
+    blocks.insert(blocks.end(), shown.begin(), shown.end());
   }
-  const uint64_t triangles = estimate.instancedTriangles, vertices = estimate.instancedVertices;
-  estimate.sceneBytes += texelBytes;
-  estimate.mirrorBytes = triangles * kMirrorTriangle + vertices * kMirrorVertex;
-  estimate.deviceBytes = triangles * kDeviceTriangle + vertices * kDeviceVertex + texelBytes;
-  return estimate;
+  return blocks;
+}
+
+uint64_t instancedTriangles(const Scene& scene) {
+  uint64_t triangles = 0;
+  for (const Node& node : scene.nodes) {
+    if (node.mesh == kNone) continue;
+    for (const Primitive& p : scene.meshes[size_t(node.mesh)].primitives) triangles += p.indices.size() / 3;
+  }
+  return triangles;
+}
+
+uint64_t hostBytes(const Scene& scene) {
+  uint64_t bytes = bytesOf(scene.materials) + bytesOf(scene.nodes) + bytesOf(scene.lights) + bytesOf(scene.cameras);
+  for (const Mesh& mesh : scene.meshes)
+    for (const Primitive& primitive : mesh.primitives) bytes += bytesOf(primitive);
+  for (const Image& image : scene.images) bytes += bytesOf(image.rgba8) + bytesOf(image.rgbaF);
+  return bytes;
 }
 
 }  // namespace limn

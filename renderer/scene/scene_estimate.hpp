@@ -1,20 +1,24 @@
 #pragma once
 #include <cstdint>
+#include <vector>
 
 #include "renderer/scene/scene.hpp"
 
 namespace limn {
 
-/// What a scene costs in memory [byte] without the picture's own buffers. Host numbers of the Scene are exact; the rest
-/// follows from the sizes of the mirror's and the hierarchy's records, in which every node has its own copy of its
-/// mesh.
-struct SceneEstimate {
-  uint64_t instancedTriangles = 0, instancedVertices = 0;  ///< over all nodes
-  uint64_t sceneBytes = 0;                                 ///< the Scene itself, on the host
-  uint64_t mirrorBytes = 0;  ///< flattened geometry and hierarchy kept on the host to rebuild from
-  uint64_t deviceBytes = 0;  ///< geometry, hierarchy and texels on the device
-  uint64_t hostBytes() const { return sceneBytes + mirrorBytes; }
+/// A primitive as one node shows it, counted: it is flattened, lit and traced as one block.
+struct BlockSize {
+  int32_t material = kNone;
+  uint64_t triangles = 0, vertices = 0;
+  uint64_t solidTriangles = 0;  ///< with an area in the mesh's own space; the others are never hit and never shine
 };
-SceneEstimate estimateScene(const Scene& scene);
+/// Every node has its own copy of its mesh.
+std::vector<BlockSize> blockSizes(const Scene& scene);
+
+/// Over all nodes.
+uint64_t instancedTriangles(const Scene& scene);
+
+/// What the Scene itself holds on the host [byte], names left aside.
+uint64_t hostBytes(const Scene& scene);
 
 }  // namespace limn

@@ -77,25 +77,30 @@ SceneNeeds sceneNeeds(const Scene& scene) {
   return needs;
 }
 
-std::vector<std::string> describe(const SceneNeeds& needs) {
-  const std::pair<bool, const char*> flags[] = {
-      {needs.punctualLights, "punctualLights"},
-      {needs.emissiveTriangles, "emissiveTriangles"},
-      {needs.environment, "environment"},
-      {needs.environmentImage, "environmentImage"},
-      {needs.textures, "textures"},
-      {needs.normalMaps, "normalMaps"},
-      {needs.alpha, "alpha"},
-      {needs.transmission, "transmission"},
-      {needs.clearcoat, "clearcoat"},
-      {needs.glossy, "glossy"},
-      {needs.mirror, "mirror"},
-      {needs.sharp, "sharp"},
-      {needs.vertexColors, "vertexColors"},
+std::span<const SceneNeedFlag> sceneNeedFlags() {
+  static constexpr SceneNeedFlag kFlags[] = {
+      {"punctualLights", &SceneNeeds::punctualLights},
+      {"emissiveTriangles", &SceneNeeds::emissiveTriangles},
+      {"environment", &SceneNeeds::environment},
+      {"environmentImage", &SceneNeeds::environmentImage},
+      {"textures", &SceneNeeds::textures},
+      {"normalMaps", &SceneNeeds::normalMaps},
+      {"alpha", &SceneNeeds::alpha},
+      {"transmission", &SceneNeeds::transmission},
+      {"clearcoat", &SceneNeeds::clearcoat},
+      {"glossy", &SceneNeeds::glossy},
+      {"mirror", &SceneNeeds::mirror},
+      {"sharp", &SceneNeeds::sharp},
+      {"vertexColors", &SceneNeeds::vertexColors},
   };
+  static_assert(std::size(kFlags) * sizeof(bool) == sizeof(SceneNeeds), "every flag is listed");
+  return kFlags;
+}
+
+std::vector<std::string> describe(const SceneNeeds& needs) {
   std::vector<std::string> names;
-  for (const auto& [set, name] : flags) {
-    if (set) names.emplace_back(name);
+  for (const auto& [name, flag] : sceneNeedFlags()) {
+    if (needs.*flag) names.emplace_back(name);
   }
   return names;
 }

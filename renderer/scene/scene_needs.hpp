@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,13 @@ struct SceneNeeds {
 constexpr float kSharpRoughness = 0.4473f;
 
 SceneNeeds sceneNeeds(const Scene& scene);
+
+/// One flag of SceneNeeds, for whoever goes over all of them.
+struct SceneNeedFlag {
+  const char* name;
+  bool SceneNeeds::*flag;
+};
+std::span<const SceneNeedFlag> sceneNeedFlags();
 
 /// Names of the set flags, for statistics and logs.
 std::vector<std::string> describe(const SceneNeeds& needs);

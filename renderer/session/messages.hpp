@@ -119,10 +119,12 @@ struct Status {
   uint64_t blocksRebuilt = 0;          ///< BVH blocks that edits and loads had built anew
   uint32_t pipelinesCreated = 0;       ///< since the process began; constant after warm-up
   std::string technique, device;
-  std::vector<std::string> ran, leftOut;              ///< SceneNeeds at work
-  std::vector<std::pair<std::string, uint64_t>> memory;  ///< bytes by owner
+  /// The technique's passes, the pipelines they ran in, and "scene: " with the name of every flag of SceneNeeds.
+  std::vector<std::string> ran, leftOut;
+  std::vector<std::pair<std::string, uint64_t>> memory;      ///< on the device, bytes by owner
+  std::vector<std::pair<std::string, uint64_t>> hostMemory;  ///< of the scene and what is kept of it, bytes by owner
   std::vector<StageTime> stages;       ///< build and warmUp of the session; the others since the restart
-  std::vector<std::pair<std::string, double>> figures;   ///< Technique::figures()
+  std::vector<std::pair<std::string, double>> figures;       ///< Technique::figures()
 };
 
 }  // namespace limn

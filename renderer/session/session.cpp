@@ -22,7 +22,7 @@ Result<bool> Session::step() {
   // At least one picture of every state is shown to who watches, or dragging would show nothing.
   if (s.frameOfState || s.idle() || !s.watched)
     if (auto done = s.drainMailbox(); !done) return done.error();
-  if (s.idle() && !s.frameIsDue(nowSeconds())) return false;
+  if (s.idle() && !s.frameIsDue(nowSeconds())) return s.tailorAtRest();
   if (!s.idle())
     if (auto done = s.work(s.config.quantumSeconds); !done) return done.error();
   if (auto done = s.answerWaits(); !done) return done.error();

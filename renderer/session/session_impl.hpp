@@ -36,6 +36,8 @@ struct Session::Impl {
   Result<void> updateTracer(const gpu::SyncReport& report);
   Result<void> writeCamera();
   Result<void> restartFilm(CostClass cost);
+  Result<bool> tailorAtRest();
+  void measureHostMemory();
   TechniqueContext context();
   std::vector<vk::Binding> pickBindings() const;
 
@@ -55,6 +57,7 @@ struct Session::Impl {
   Result<std::shared_ptr<const Frame>> makeFrame();
   Result<void> estimateError();
   void refreshStatus();
+  void listWork();
   Phase phase() const;
 
   // session_queries.cpp

@@ -86,6 +86,17 @@ Result<std::shared_ptr<const Frame>> Session::Impl::makeFrame() {
   return std::shared_ptr<const Frame>(std::move(frame));
 }
 
+void Session::Impl::listWork() {
+  static constexpr const char* kPipelines[] = {"pipelines tailored to the scene", "pipelines tailored to more than the scene",
+                                               "pipelines for any scene"};
+  status.ran.clear();
+  status.leftOut.clear();
+  for (const PassUse& pass : technique->passes()) (pass.ran ? status.ran : status.leftOut).push_back(pass.name);
+  status.ran.emplace_back(config.allNeeds ? "everything, needed or not" : kPipelines[uint32_t(technique->pipelines())]);
+  for (const auto& [name, flag] : sceneNeedFlags())
+    (needs.*flag ? status.ran : status.leftOut).push_back("scene: " + std::string(name));
+}
+
 void Session::Impl::refreshStatus() {
   status.phase = phase();
   status.idle = idle();
@@ -98,9 +109,7 @@ void Session::Impl::refreshStatus() {
   status.pipelinesCreated = device.pipelineStats().created;
   status.technique = technique->info().name;
   status.device = device.info().name;
-  status.ran = technique->ran();
-  status.leftOut = technique->leftOut();
-  for (const std::string& need : describe(needs)) status.ran.push_back("scene: " + need);
+  listWork();
   status.memory.assign(device.memory().byOwner().begin(), device.memory().byOwner().end());
   status.stages = stages;
   status.stages.push_back({"sample", float(sampledSeconds * 1e3)});

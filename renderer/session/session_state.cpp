@@ -3,7 +3,9 @@
 #include "renderer/base/clock.hpp"
 #include "renderer/base/log.hpp"
 #include "renderer/gpu/camera.hpp"
+#include "renderer/gpu/needs_constants.hpp"
 #include "renderer/scene/clean_environment.hpp"
+#include "renderer/scene/scene_estimate.hpp"
 #include "renderer/session/session_impl.hpp"
 #include "renderer/vk/transfer.hpp"
 #include "shaders/shared/bindings.h"
@@ -99,9 +101,14 @@ Result<void> Session::Impl::syncScene(const ChangeSet& changes) {
   auto synced = mirror.sync(scene, changes);
   if (!synced) return synced.error();
   if (auto done = updateTracer(*synced); !done) return done;
-  needs = sceneNeeds(scene);
+  needs = config.allNeeds ? gpu::allNeeds() : sceneNeeds(scene);
+  measureHostMemory();
   ++lightingRevision;
   return {};
+}
+
+void Session::Impl::measureHostMemory() {
+  status.hostMemory = {{"scene", hostBytes(scene)}, {"mirror", mirror.hostBytes()}, {"bvh", tracer.hostBytes()}};
 }
 
 Result<void> Session::Impl::updateTracer(const gpu::SyncReport& synced) {
@@ -127,7 +134,7 @@ Result<void> Session::Impl::writeCamera() {
 
 TechniqueContext Session::Impl::context() {
   return {device, scene, mirror, tracer, camera, *film, *statistics, config.seed, config.firstSample, lightingRevision,
-          config.sampleCount};
+          config.sampleCount, config.allNeeds};
 }
 
 std::vector<vk::Binding> Session::Impl::pickBindings() const {
@@ -160,6 +167,15 @@ Result<void> Session::Impl::restartFilm(CostClass cost) {
   publishedPasses = 0;
   ++status.restarts;
   return {};
+}
+
+// Pipelines that an edit left as they were, cut to more than the scene needs, are made anew when nobody looks: a stop for
+// the compiler is no matter then.
+Result<bool> Session::Impl::tailorAtRest() {
+  if (watched || technique->pipelines() == gpu::PipelineVariant::tailored) return false;
+  if (auto done = technique->prepare(context(), needs, true); !done) return done.error();
+  refreshStatus();
+  return true;
 }
 
 }  // namespace limn

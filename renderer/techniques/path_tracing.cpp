@@ -34,8 +34,8 @@ class PathTracing final : public Technique {
   Result<void> restart(const TechniqueContext& context, CostClass changed) override;
   Result<Progress> advance(const TechniqueContext& context, double seconds) override;
   double secondsToGrid(uint32_t stride) const override;
-  std::vector<std::string> ran() const override { return m_ran; }
-  std::vector<std::string> leftOut() const override { return m_leftOut; }
+  std::vector<PassUse> passes() const override;
+  gpu::PipelineVariant pipelines() const override { return m_trace.variant(); }
   std::vector<StageTime> stages() const override {
     return {{"select", float(m_selectSeconds * 1e3)}, {"trace", float(m_traceSeconds * 1e3)}};
   }
@@ -49,7 +49,6 @@ class PathTracing final : public Technique {
   Result<void> beginPass(const TechniqueContext& context);
   Result<void> dispatch(const TechniqueContext& context, uint32_t count);
   void readCounters();
-  void describeNeeds(const SceneNeeds& needs);
   uint32_t sampleLimit(const TechniqueContext& context) const { return context.sampleLimit ? context.sampleLimit : m_maxSamples; }
   Progress progress() const;
 
@@ -61,7 +60,7 @@ class PathTracing final : public Technique {
   vk::Buffer m_order, m_active, m_counters;
   PixelOrder m_pixelOrder;
   uint32_t m_listWidth = 0, m_listHeight = 0;  ///< [pixel] the lists were made for
-  std::vector<std::string> m_ran, m_leftOut;
+  SceneNeeds m_needs;
   WorkRate m_rate{kInitialPathsPerSecond};
 
   uint32_t m_pass = 0, m_cursor = 0, m_passPixels = 0, m_passSamples = 0, m_samplesDone = 0;
@@ -71,19 +70,17 @@ class PathTracing final : public Technique {
 };
 
 Result<void> PathTracing::prepare(const TechniqueContext& context, const SceneNeeds& needs, bool mayCompile) {
-  describeNeeds(needs);
+  m_needs = needs;
   if (m_listWidth != context.film.width() || m_listHeight != context.film.height())
     if (auto made = makeLists(context); !made) return made;
   return m_trace.prepare(context.device, bindings(context, m_order), needs, mayCompile);
 }
 
-void PathTracing::describeNeeds(const SceneNeeds& needs) {
-  m_ran = {"path tracing"};
-  m_leftOut.clear();
-  (needs.alpha ? m_ran : m_leftOut).push_back("alpha tests");
-  (needs.punctualLights || needs.emissiveTriangles || needs.environment ? m_ran : m_leftOut).push_back("next-event estimation");
-  (needs.environmentImage ? m_ran : m_leftOut).push_back("environment importance table");
-  (needs.textures ? m_ran : m_leftOut).push_back("textures");
+std::vector<PassUse> PathTracing::passes() const {
+  return {{"path tracing", true},
+          {"next-event estimation", m_needs.punctualLights || m_needs.emissiveTriangles || m_needs.environment},
+          {"environment importance table", m_needs.environmentImage},
+          {"adaptive sampling", m_adaptive}};
 }
 
 void PathTracing::setParameter(const std::string& name, double value) {

@@ -121,7 +121,7 @@ Result<void> PointProjectionTechnique::updatePoints(const TechniqueContext& cont
   m_pointsKnown = true;
   forgetLight();
   const PointLayout layout = m_points.count() > 0 ? PointLayout{m_points.clusterCount(), m_points.clusterSize()} : PointLayout{1, 1};
-  if (auto made = m_light.resize(context.device, layout, hasGlossySources(context.description)); !made) return made;
+  if (auto made = m_light.resize(context.device, layout, context.allNeeds || hasGlossySources(context.description)); !made) return made;
   const uint32_t sides = 2 * layout.clusterCount;
   m_bounceSlots = std::min(std::max(1u, m_settings.bouncePoints / layout.clusterCount), layout.clusterSize);
   auto list = makeBuffer(context.device, "pointProjection.bounceList", size_t(sides) * m_bounceSlots * sizeof(uint32_t));
@@ -249,26 +249,22 @@ uint64_t PointProjectionTechnique::discardedSamples() const {
   return m_counters.as<uint32_t>()[shared::kCounterDiscarded] + m_light.discardedSamples();
 }
 
-std::vector<std::string> PointProjectionTechnique::ran() const {
-  std::vector<std::string> names{"direct light"};
-  if (gathers()) names.insert(names.end(), {"surface points", "point relighting", "gathers", "joint bilateral upsampling"});
-  if (gathers() && m_needs.glossy) names.emplace_back("glossy gathers");
-  if (gathers() && m_light.hasLobes()) names.emplace_back("glossy lobes of points");
-  if (m_needs.sharp) names.emplace_back("rays through sharp lobes");
-  if (gathers() && bouncesAtPoints() > 0) names.emplace_back(m_settings.paths > 0 ? "paths from points" : "gathers at points");
-  if (gathers() && m_settings.correctionRays > 0) names.emplace_back("correction rays");
-  return names;
+std::vector<PassUse> PointProjectionTechnique::passes() const {
+  const bool gathering = gathers();
+  return {{"direct light", true},
+          {"surface points", m_points.count() > 0},
+          {"point relighting", gathering},
+          {"gathers", gathering},
+          {"gathers at points", gathering && (m_settings.bounces > 1 || m_needs.sharp)},
+          {"joint bilateral upsampling", gathering},
+          {"joint bilateral filter", gathering && m_settings.filterSize >= 3},
+          {"glossy gathers", gathering && m_needs.glossy},
+          {"glossy lobes of points", gathering && m_light.hasLobes()},
+          {"rays through sharp lobes", m_needs.sharp}};
 }
 
-std::vector<std::string> PointProjectionTechnique::leftOut() const {
-  std::vector<std::string> names;
-  if (!gathers()) names.insert(names.end(), {"surface points", "point relighting", "gathers", "joint bilateral upsampling"});
-  if (!m_needs.glossy) names.emplace_back("glossy gathers");
-  if (!m_light.hasLobes()) names.emplace_back("glossy lobes of points");
-  if (!m_needs.sharp) names.emplace_back("rays through sharp lobes");
-  if (!m_needs.alpha) names.emplace_back("alpha tests");
-  if (!m_needs.textures) names.emplace_back("textures");
-  return names;
+gpu::PipelineVariant PointProjectionTechnique::pipelines() const {
+  return std::max({m_light.pipelines(), m_gather.pipelines(), m_sites.variant(), m_shade.variant()});
 }
 
 std::vector<StageTime> PointProjectionTechnique::stages() const {

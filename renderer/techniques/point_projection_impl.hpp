@@ -43,8 +43,8 @@ class PointProjectionTechnique final : public Technique {
   Result<void> restart(const TechniqueContext& context, CostClass changed) override;
   Result<Progress> advance(const TechniqueContext& context, double seconds) override;
   double secondsToGrid(uint32_t stride) const override;
-  std::vector<std::string> ran() const override;
-  std::vector<std::string> leftOut() const override;
+  std::vector<PassUse> passes() const override;
+  gpu::PipelineVariant pipelines() const override;
   std::vector<StageTime> stages() const override;
   std::vector<std::pair<std::string, double>> figures() const override;
   uint64_t raysTraced() const override;

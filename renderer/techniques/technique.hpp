@@ -7,6 +7,7 @@
 #include "renderer/film/film.hpp"
 #include "renderer/film/film_statistics.hpp"
 #include "renderer/gpu/device_scene.hpp"
+#include "renderer/gpu/pipeline_variant.hpp"
 #include "renderer/scene/scene_needs.hpp"
 #include "renderer/techniques/technique_info.hpp"
 #include "renderer/visibility/scene_tracer.hpp"
@@ -27,6 +28,7 @@ struct TechniqueContext {
   uint32_t firstSample = 0;          ///< index of the first sample taken of a pixel
   uint64_t lightingRevision = 0;     ///< counts changes of anything that light meets or comes from
   uint32_t sampleLimit = 0;          ///< samples of every pixel at which to stop; 0: the technique's own end
+  bool allNeeds = false;             ///< everything is at work that any scene may need, for comparison
 };
 
 /// How far the picture has come since the restart.
@@ -37,6 +39,12 @@ struct Progress {
   double gatheredShare = 0.0;        ///< share of pixels with a sample of their own
   uint32_t samplesPerPixel = 0;      ///< of a pixel that was never stopped
   bool converged = false;
+};
+
+/// A pass of a technique's work, for the statistics.
+struct PassUse {
+  std::string name;
+  bool ran = false;                  ///< else the scene and the parameters do not call for it
 };
 
 /// A way to compute the film. It works in quanta, so that an edit waits for one quantum and never for a pass; what a pass
@@ -58,9 +66,10 @@ class Technique {
   virtual Result<Progress> advance(const TechniqueContext& context, double seconds) = 0;
   /// Predicted time until every pixel of the grid of `stride` has a sample, from the measured rate [s].
   virtual double secondsToGrid(uint32_t stride) const = 0;
-  /// Passes of work that ran, and those that the scene did not need, for the statistics.
-  virtual std::vector<std::string> ran() const = 0;
-  virtual std::vector<std::string> leftOut() const = 0;
+  /// Every pass of work that the technique knows. What the scene needs of all techniques alike is told by SceneNeeds.
+  virtual std::vector<PassUse> passes() const = 0;
+  /// The worst of the pipelines that depend on the scene's needs, as of the last prepare().
+  virtual gpu::PipelineVariant pipelines() const = 0;
   /// Where the time since the restart went, by kind of work, prepare() before it included; what an edit kept is not in it.
   virtual std::vector<StageTime> stages() const = 0;
   /// Facts about the parts at work by name, as "pointRelativeRadius"; the technique's header says what they are.

@@ -25,6 +25,11 @@ bool isDegenerate(const glm::vec3* c) {
 
 glm::vec4 withWord(const glm::vec3& v, uint32_t word) { return {v, std::bit_cast<float>(word)}; }
 
+uint64_t bytesOf(const BvhBlock& block) {
+  return sizeof block + block.tree.nodes.size() * sizeof(BvhNode) + block.tree.items.size() * sizeof(uint32_t) +
+         block.triangles.size() * sizeof(glm::vec4);
+}
+
 BvhBlock buildBlock(const BvhBuilder& builder, const TriangleBlock& source) {
   LIMN_CHECK_EQ(source.corners.size() % 3, 0u);
   BvhBlock block;
@@ -78,6 +83,8 @@ Result<void> SceneBvh::update(vk::Device& device, std::span<const TriangleBlock>
   auto tables = layOut(top, blockOfItem, m_blocks);
   if (!tables) return tables.error();
   if (auto stored = store(device, *tables); !stored) return stored;
+  m_stats.hostBytes = 0;
+  for (const BvhBlock& block : m_blocks) m_stats.hostBytes += bytesOf(block);
   m_stats.blocksRebuilt = uint32_t(rebuild.size());
   m_stats.buildMs = (nowSeconds() - start) * 1e3;
   return {};

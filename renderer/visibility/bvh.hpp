@@ -23,6 +23,7 @@ struct BvhStats {
   uint32_t nodes = 0;          ///< on the device
   uint32_t triangles = 0;      ///< on the device
   uint64_t bytes = 0;          ///< of both buffers
+  uint64_t hostBytes = 0;      ///< of the blocks' trees, kept to lay out anew
   uint32_t blocksRebuilt = 0;  ///< blocks whose own tree was built in the last update
   double buildMs = 0;          ///< time of the last update, upload included [ms]
 };

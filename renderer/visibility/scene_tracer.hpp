@@ -30,6 +30,8 @@ class SceneTracer {
   TraceMethod method() const { return m_method; }
   /// Blocks whose own tree was built in the last update.
   uint32_t blocksRebuilt() const { return m_blocksRebuilt; }
+  /// Kept on the host to build from [byte]; nothing for rayQuery.
+  uint64_t hostBytes() const { return m_bvh.stats().hostBytes; }
 
  private:
   TraceMethod m_method;

@@ -5,12 +5,12 @@
 
 #include "renderer/scene/scene_estimate.hpp"
 #include "renderer/scene/scene_needs.hpp"
+#include "renderer/session/session_memory.hpp"
+#include "renderer/techniques/technique_info.hpp"
 #include "server/limn/hex_text.hpp"
 
 namespace limn {
 namespace {
-
-constexpr uint32_t kFilmBytesPerPixel = 5 * 16;  // film.hpp: five planes of four floats
 
 std::string number(double value) {
   char text[32];
@@ -105,15 +105,27 @@ std::string environmentText(const Scene& scene) {
 
 std::string mebibytes(uint64_t bytes) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.1f MiB", double(bytes) / double(1u << 20));
+  std::snprintf(text, sizeof text, "%10.2f MiB\n", double(bytes) / double(1u << 20));
   return text;
 }
 
-std::string estimateText(const Scene& scene) {
-  const SceneEstimate estimate = estimateScene(scene);
-  return "cost: " + std::to_string(estimate.instancedTriangles) + " triangles over all nodes; host " +
-         mebibytes(estimate.hostBytes()) + "; device " + mebibytes(estimate.deviceBytes) +
-         " without the picture, which takes " + std::to_string(kFilmBytesPerPixel) + " bytes a pixel\n";
+/// A line an owner and one for all of them.
+std::string memoryTable(const std::string& where, const vk::MemoryUse& memory) {
+  const auto line = [](std::string name, uint64_t bytes) {
+    name.resize(20, ' ');
+    return "  " + name + mebibytes(bytes);
+  };
+  std::string text;
+  for (const auto& [owner, bytes] : memory.byOwner()) text += line(owner, bytes);
+  return text + line(where + " in all", memory.totalBytes());
+}
+
+std::string costText(const Scene& scene, const SessionConfig& config) {
+  const gpu::MemoryPrediction memory = predictMemory(scene, config);
+  const std::string& technique = config.technique.empty() ? techniqueInfos().front().name : config.technique;
+  return "cost: " + std::to_string(instancedTriangles(scene)) + " triangles over all nodes; memory for " + technique +
+         " at " + std::to_string(config.width) + "x" + std::to_string(config.height) + " pixels:\n" +
+         memoryTable("device", memory.device) + memoryTable("host", memory.host);
 }
 
 std::string reportText(const LoadReport& report) {
@@ -127,14 +139,14 @@ std::string reportText(const LoadReport& report) {
 
 }  // namespace
 
-std::string infoText(const LoadedScene& loaded) {
+std::string infoText(const LoadedScene& loaded, const SessionConfig& config) {
   const Scene& scene = loaded.scene;
   const std::vector<std::string> needs = describe(sceneNeeds(scene));
   return scene.name + ", hash " + hexText(scene.hash()) + "\n" + geometryText(scene, loaded.report) +
          listText("materials", scene.materials, materialText) + listText("images", scene.images, imageText) +
          listText("lights", scene.lights, lightText) + listText("cameras", scene.cameras, cameraText) +
          environmentText(scene) + "needs: " + (needs.empty() ? "nothing special" : joined(needs)) + "\n" +
-         reportText(loaded.report) + estimateText(scene);
+         reportText(loaded.report) + costText(scene, config);
 }
 
 }  // namespace limn

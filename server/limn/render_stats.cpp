@@ -108,6 +108,7 @@ std::string renderStatsJson(const RenderStats& stats) {
   json.field("ran", stats.status.ran);
   json.field("leftOut", stats.status.leftOut);
   json.field("memory", stats.status.memory);
+  json.field("hostMemory", stats.status.hostMemory);
   json.field("stageMs", stageTimes(stats.status));
   json.field("figures", stats.status.figures);
   writeReport(json, stats.report);

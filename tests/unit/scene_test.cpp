@@ -127,17 +127,27 @@ TEST(SceneHash, IgnoresNamesTheViewAndTheSignOfZero) {
 
 TEST(SceneEstimate, CountsEveryNodesOwnCopy) {
   Scene scene = triangleScene();
-  const SceneEstimate one = estimateScene(scene);
-  EXPECT_EQ(one.instancedTriangles, 1u);
-  EXPECT_EQ(one.instancedVertices, 4u);
+  const uint64_t one = hostBytes(scene);
+  EXPECT_EQ(instancedTriangles(scene), 1u);
   scene.nodes.resize(10, scene.nodes[0]);
-  const SceneEstimate ten = estimateScene(scene);
-  EXPECT_EQ(ten.instancedTriangles, 10u);
-  EXPECT_EQ(ten.deviceBytes, 10 * one.deviceBytes);
-  EXPECT_EQ(ten.mirrorBytes, 10 * one.mirrorBytes);
-  EXPECT_EQ(ten.sceneBytes, one.sceneBytes + 9 * sizeof(Node));
+  EXPECT_EQ(instancedTriangles(scene), 10u);
+  EXPECT_EQ(hostBytes(scene), one + 9 * sizeof(Node));
+  ASSERT_EQ(blockSizes(scene).size(), 10u);
+  for (const BlockSize& block : blockSizes(scene)) {
+    EXPECT_EQ(block.triangles, 1u);
+    EXPECT_EQ(block.vertices, 4u);
+    EXPECT_EQ(block.solidTriangles, 1u);
+  }
   scene.images.push_back({"", 16, 16, std::vector<uint8_t>(16 * 16 * 4), {}});
-  EXPECT_EQ(estimateScene(scene).deviceBytes, ten.deviceBytes + 1024);
+  EXPECT_EQ(hostBytes(scene), one + 9 * sizeof(Node) + 1024);
+}
+
+TEST(SceneEstimate, TrianglesWithoutAreaAreToldApart) {
+  Scene scene = triangleScene();
+  Primitive& p = scene.meshes[0].primitives[0];
+  p.indices.insert(p.indices.end(), {0, 1, 1});
+  EXPECT_EQ(blockSizes(scene)[0].triangles, 2u);
+  EXPECT_EQ(blockSizes(scene)[0].solidTriangles, 1u);
 }
 
 }  // namespace

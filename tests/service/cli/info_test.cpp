@@ -7,6 +7,7 @@ namespace limn {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 LoadedScene exampleScene() {
   LoadedScene loaded;
@@ -53,7 +54,22 @@ TEST(Info, TellsContentsCostAndWhatIsNotSupported) {
   EXPECT_THAT(text, HasSubstr("cameras: 0\n"));
   EXPECT_THAT(text, HasSubstr("  KHR_materials_iridescence (lamp): it is shown without it\n"));
   EXPECT_THAT(text, HasSubstr("note: no camera: one was added"));
-  EXPECT_THAT(text, HasSubstr("cost: 2 triangles over all nodes"));
+  EXPECT_THAT(text, HasSubstr("cost: 2 triangles over all nodes; memory for path-tracing at 512x512 pixels:\n"));
+}
+
+TEST(Info, MemoryIsToldByOwnerForTheTechniqueAndSizeAskedFor) {
+  SessionConfig config;
+  config.width = 1024;
+  config.height = 512;
+  config.technique = "point-projection";
+  const std::string text = infoText(exampleScene(), config);
+  EXPECT_THAT(text, HasSubstr("memory for point-projection at 1024x512 pixels:\n"));
+  // Five planes of four floats, four bytes of display, and a hundredth for the error.
+  EXPECT_THAT(text, HasSubstr("  film                     42.04 MiB\n"));
+  for (const char* owner : {"scene ", "textures ", "lights ", "environment ", "visibility ", "point-light ", "surface-points ",
+                            "device in all ", "mirror ", "bvh ", "host in all "})
+    EXPECT_THAT(text, HasSubstr("  " + std::string(owner))) << owner;
+  EXPECT_THAT(text, Not(HasSubstr("path-tracing")));
 }
 
 TEST(Info, AnEmptySceneIsToldToo) {
