@@ -42,10 +42,15 @@ void printSummary(const BenchResults& results) {
   for (const TechniqueCalibration& c : results.calibrations)
     std::printf("%s: %.0f %% of %zu intervals hold the error, median of estimate / error %.3f (%zu left out)\n",
                 c.technique.c_str(), 100.0 * c.trimmed.heldShare, c.trimmed.count, c.trimmed.medianRatio, c.leftOut);
+  for (const SceneResult& scene : results.scenes)
+    for (const Ablation& a : scene.ablations)
+      std::printf("%s, %s: %.3g s a step, %.3g s with everything at work: %.2f times as long\n", scene.name.c_str(),
+                  a.technique.c_str(), a.needed.stepSeconds, a.all.stepSeconds,
+                  a.all.stepSeconds / a.needed.stepSeconds);
   for (const Growth& g : results.growth)
-    if (g.time && g.memory)
-      std::printf("%s: time per step grows with %s to the %.2f, memory to the %.2f\n", g.technique.c_str(),
-                  g.axis.c_str(), g.time->exponent, g.memory->exponent);
+    if (g.time && g.first && g.memory)
+      std::printf("%s: time per step grows with %s to the %.2f, the first steps to the %.2f, memory to the %.2f\n",
+                  g.technique.c_str(), g.axis.c_str(), g.time->exponent, g.first->exponent, g.memory->exponent);
   for (const std::string& sentence : results.absent) std::printf("%s\n", sentence.c_str());
 }
 

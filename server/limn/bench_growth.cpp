@@ -1,6 +1,8 @@
 #include "server/limn/bench_growth.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "renderer/base/clock.hpp"
 #include "renderer/vk/device.hpp"
@@ -10,12 +12,14 @@ namespace {
 
 constexpr float kSide = 10.0f, kHeight = 4.0f;  // [m] of the room's floor and of the lights above it
 constexpr float kTotalIntensity = 60.0f;        // [W/sr] of all lights together
-constexpr uint32_t kLeastSteps = 3;             // the first ones of a technique may be smaller than the rest
+constexpr uint32_t kFirstSteps = 4;             // those of a technique that differ from the rest
 constexpr double kLeastSeconds = 0.5;
+constexpr const char* kPoints = "points";       // an axis, and the parameter of techniques that have them
 
 /// What one axis varies; the other sizes stay at these.
 struct GrowthSize {
   uint32_t triangles = 10'000, lights = 4, side = 128;
+  std::optional<uint32_t> points = {};          // a technique's own number unless it is given
 };
 
 Primitive rippledFloor(uint32_t triangles) {
@@ -59,18 +63,21 @@ Result<Growth::Point> measurePoint(vk::Device& device, const BenchOptions& optio
   config.width = config.height = size.side;
   config.technique = technique;
   config.parameters = parametersOf(*findTechnique(technique), options.settings);
+  if (size.points) config.parameters.emplace_back(kPoints, *size.points);
   Result<std::unique_ptr<BenchSession>> made =
       BenchSession::create(device, growthScene(size.triangles, size.lights), config);
   if (!made) return made.error();
   Session& session = ***made;
-  if (Result<void> done = session.runSteps(kLeastSteps); !done) return done.error();
+  Growth::Point point;
+  const double first = nowSeconds();
+  if (Result<void> done = session.runSteps(kFirstSteps); !done) return done.error();
+  point.firstSeconds = nowSeconds() - first;
   uint32_t steps = 0;
   double seconds = 0.0;
   for (const double begin = nowSeconds(); steps < 2 || seconds < kLeastSeconds; seconds = nowSeconds() - begin)
-    if (Result<void> done = session.runSteps(kLeastSteps + ++steps); !done) return done.error();
+    if (Result<void> done = session.runSteps(kFirstSteps + ++steps); !done) return done.error();
   const Result<Status> status = session.status();
   if (!status) return status.error();
-  Growth::Point point;
   point.stepSeconds = seconds / steps;
   for (const auto& [owner, bytes] : status->memory) point.megabytes += double(bytes) * 1e-6;
   for (const StageTime& stage : status->stages)
@@ -79,13 +86,15 @@ Result<Growth::Point> measurePoint(vk::Device& device, const BenchOptions& optio
 }
 
 void fit(Growth& growth) {
-  std::vector<Sample> time, memory, build;
+  std::vector<Sample> time, first, memory, build;
   for (const Growth::Point& point : growth.points) {
     time.push_back({point.size, point.stepSeconds});
+    first.push_back({point.size, point.firstSeconds});
     memory.push_back({point.size, point.megabytes});
     build.push_back({point.size, point.buildSeconds});
   }
   growth.time = fitPower(time);
+  growth.first = fitPower(first);
   growth.memory = fitPower(memory);
   growth.build = fitPower(build);
 }
@@ -100,10 +109,18 @@ const std::vector<Axis>& axes() {
   static const std::vector<Axis> kAxes{
       {"triangles", {1e4, 3e4, 1e5, 3e5, 1e6, 3e6}, [](double n) { return GrowthSize{uint32_t(n), 4, 128}; }},
       {"lights", {1, 10, 100, 1e3, 1e4}, [](double n) { return GrowthSize{10'000, uint32_t(n), 128}; }},
+      {kPoints,
+       {16384, 65536, 262144, 1048576},
+       [](double n) { return GrowthSize{10'000, 4, 128, uint32_t(n)}; }},
       {"pixels",
        {64.0 * 64, 128.0 * 128, 256.0 * 256, 512.0 * 512},
        [](double n) { return GrowthSize{10'000, 4, uint32_t(std::lround(std::sqrt(n)))}; }}};
   return kAxes;
+}
+
+bool hasPoints(const TechniqueInfo& technique) {
+  const auto isPoints = [](const ParameterInfo& p) { return p.name == kPoints; };
+  return std::any_of(technique.parameters.begin(), technique.parameters.end(), isPoints);
 }
 
 }  // namespace
@@ -132,7 +149,8 @@ Result<std::vector<Growth>> measureGrowth(vk::Device& device, const BenchOptions
   std::vector<Growth> all;
   for (const std::string& technique : options.techniques)
     for (const Axis& axis : axes()) {
-      Growth growth{technique, axis.name, {}, {}, {}, {}};
+      if (axis.name == kPoints && !hasPoints(*findTechnique(technique))) continue;
+      Growth growth{technique, axis.name, {}, {}, {}, {}, {}};
       for (const double size : axis.sizes) {
         Result<Growth::Point> point = measurePoint(device, options, technique, axis.at(size));
         if (!point) return point.error();

@@ -7,8 +7,8 @@ namespace limn::bench {
 /// picture but for the lights' places, whatever the numbers.
 LoadedScene growthScene(uint32_t triangles, uint32_t lights);
 
-/// Seconds of a step, device memory and seconds to build, against each size alone, for every technique. Errors: those
-/// of the session.
+/// Seconds of a step and of the first ones, device memory and seconds to build, against each size alone, for every
+/// technique; numbers of points for those that have them. Errors: those of the session.
 Result<std::vector<Growth>> measureGrowth(vk::Device& device, const BenchOptions& options);
 
 }  // namespace limn::bench

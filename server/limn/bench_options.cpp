@@ -156,6 +156,7 @@ Result<void> readSizes(const Arguments& arguments, BenchOptions& options) {
   if (!seconds) return seconds.error();
   options.referenceSeconds = *seconds;
   options.growth = arguments.has("growth");
+  options.ablation = arguments.has("ablation");
   return {};
 }
 
@@ -177,7 +178,8 @@ CommandSpec benchSpec() {
            {"reference-seconds", "S", "most time for one scene's reference (default: 200)"},
            {"pictures", "LIST.csv", "another renderer's pictures, lines of scene,name,seconds,file.exr: more curves"},
            {"hard-cases", "FILE.json", "what the tests left in BUILD/hard_cases.json: a table of hard cases"},
-           {"growth", "", "also time per step and memory against triangles, lights and pixels, of made scenes"}}};
+           {"ablation", "", "also time per step with everything at work against only what each scene needs"},
+           {"growth", "", "also time per step and memory against triangles, lights, points, pixels of made scenes"}}};
 }
 
 Result<BenchOptions> benchOptions(const Arguments& arguments) {

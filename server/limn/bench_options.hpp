@@ -35,7 +35,7 @@ struct BenchOptions {
   uint32_t seeds = 3;
   double referenceSeconds = 200.0;     ///< most time for one scene's reference [s]
   std::vector<Setting> settings;
-  bool growth = false;
+  bool growth = false, ablation = false;
 };
 
 CommandSpec benchSpec();

@@ -6,11 +6,11 @@
 
 #include "renderer/film/file_bytes.hpp"
 #include "server/limn/bench_html.hpp"
+#include "server/limn/bench_page_parts.hpp"
 
 namespace limn::bench {
 namespace {
 
-constexpr uint64_t kMostPlotBytes = 16u << 20;
 constexpr const char* kStyle =
     "body{font:15px/1.45 sans-serif;max-width:76rem;margin:2rem auto;padding:0 1rem;color:#1c1c1c;background:#fff}"
     "h2{margin-top:2.5rem;border-bottom:1px solid #ccc}table{border-collapse:collapse;margin:.8rem 0}"
@@ -37,13 +37,6 @@ std::string figure(const std::string& png, const std::string& caption) {
   return "<figure><img alt=\"" + alt + "\" src=\"" + source + "\"><figcaption>" + alt + "</figcaption></figure>\n";
 }
 
-std::string plot(const std::string& directory, const std::string& name, const std::string& caption) {
-  const auto bytes = readFileBytes(std::filesystem::path(directory) / (name + ".svg"), kMostPlotBytes);
-  if (!bytes) return "";
-  return "<p><img alt=\"" + escaped(caption) + "\" src=\"data:image/svg+xml;base64," +
-         base64(std::string(bytes->begin(), bytes->end())) + "\"></p>\n";
-}
-
 std::string timeText(const TimeToError& time) {
   const std::string seconds = number(time.seconds);
   if (time.when == TimeToError::When::at) return seconds;
@@ -61,10 +54,6 @@ std::string timesTable(const BenchResults& results) {
       text += row(cells);
     }
   return text + "</table>\n";
-}
-
-std::string fitText(const std::optional<PowerFit>& fit) {
-  return fit ? number(fit->exponent, "%.3f") + " ± " + number(fit->exponentDeviation, "%.3f") : "–";
 }
 
 std::string slopesTable(const BenchResults& results) {
@@ -158,22 +147,6 @@ std::string sceneSection(const SceneResult& scene, const std::string& directory)
   return text + partsTable(scene) + needsText(scene);
 }
 
-std::string growthSection(const BenchResults& results, const std::string& directory) {
-  if (results.growth.empty()) return "";
-  std::string text = "<h2>Growth</h2>\n<p>Exponents of a power law fitted to made scenes; the largest and smallest "
-                     "sizes measured are given.</p>\n" +
-                     header({"technique", "against", "from", "to", "time per step", "device memory", "build"});
-  for (const Growth& growth : results.growth) {
-    if (growth.points.empty()) continue;
-    text += row({escaped(growth.technique), escaped(growth.axis), number(growth.points.front().size, "%.0f"),
-                 number(growth.points.back().size, "%.0f"), fitText(growth.time), fitText(growth.memory),
-                 fitText(growth.build)});
-  }
-  text += "</table>\n";
-  for (const std::string axis : {"triangles", "lights", "pixels"}) text += plot(directory, "growth-" + axis, axis);
-  return text;
-}
-
 }  // namespace
 
 std::string resultsPage(const BenchResults& results, const std::string& directory) {
@@ -189,7 +162,7 @@ std::string resultsPage(const BenchResults& results, const std::string& director
   text += kEstimates + calibrationTable(results) + plot(directory, "calibration", "estimated over true relMSE");
   text += hardCasesSection(results.hardCases);
   for (const SceneResult& scene : results.scenes) text += sceneSection(scene, directory);
-  return text + growthSection(results, directory) + "</body></html>\n";
+  return text + ablationSection(results) + growthSection(results, directory) + "</body></html>\n";
 }
 
 }  // namespace limn::bench

@@ -1,6 +1,7 @@
 #include "server/limn/bench_plots.hpp"
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 
@@ -47,16 +48,34 @@ void addCalibrationPlot(const BenchResults& results, std::vector<Plot>& plots) {
   plots.push_back(plot);
 }
 
+/// The technique with the exponent of the power law through its points.
+std::string fitTitle(const std::string& technique, const std::optional<PowerFit>& fit) {
+  if (!fit) return technique;
+  char text[32];
+  std::snprintf(text, sizeof text, ", to the %.2f", fit->exponent);
+  return technique + text;
+}
+
 void addGrowthPlots(const BenchResults& results, std::vector<Plot>& plots) {
-  std::map<std::string, Plot> byAxis;
+  std::map<std::string, Plot> byName;
+  const auto plotOf = [&](const std::string& kind, const Growth& growth, const char* what) -> Plot& {
+    const std::string name = kind + "-" + growth.axis;
+    return byName.try_emplace(name, Plot{name, "Growth with " + growth.axis, growth.axis, what, {}}).first->second;
+  };
   for (const Growth& growth : results.growth) {
-    const Plot empty{"growth-" + growth.axis, "Growth with " + growth.axis, growth.axis, "seconds a step", {}};
-    Plot& plot = byAxis.try_emplace(growth.axis, empty).first->second;
-    Plot::Line line{growth.technique, {}};
-    for (const Growth::Point& point : growth.points) line.points.push_back({point.size, point.stepSeconds});
-    plot.lines.push_back(line);
+    Plot::Line time{fitTitle(growth.technique, growth.time), {}}, memory{fitTitle(growth.technique, growth.memory), {}};
+    Plot::Line first{fitTitle(growth.technique + ", first steps", growth.first), {}};
+    for (const Growth::Point& point : growth.points) {
+      time.points.push_back({point.size, point.stepSeconds});
+      first.points.push_back({point.size, point.firstSeconds});
+      memory.points.push_back({point.size, point.megabytes});
+    }
+    Plot& seconds = plotOf("growth", growth, "seconds: of a step, of the first steps together");
+    seconds.lines.push_back(time);
+    seconds.lines.push_back(first);
+    plotOf("memory", growth, "device memory [MB]").lines.push_back(memory);
   }
-  for (const auto& [axis, plot] : byAxis) plots.push_back(plot);
+  for (const auto& [name, plot] : byName) plots.push_back(plot);
 }
 
 /// Between single quotes; the titles come from file names.

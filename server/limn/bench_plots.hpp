@@ -16,7 +16,7 @@ struct Plot {
 };
 
 /// Error over seconds for every scene ("error-SCENE"), all scenes ("errors"), error over samples ("samples"), estimate
-/// over true error ("calibration") and growth ("growth-AXIS").
+/// over true error ("calibration"), growth ("growth-AXIS") and memory ("memory-AXIS").
 std::vector<Plot> plotsOf(const BenchResults& results);
 
 /// What gnuplot is told: data first, then the drawing into DIRECTORY/NAME.svg and .png.

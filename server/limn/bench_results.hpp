@@ -29,6 +29,14 @@ struct Curve {
 };
 constexpr double kErrorLevels[] = {0.1, 0.03, 0.01, 0.003, 0.001};
 
+/// A technique on a scene, with what the scene needs and with everything at work that any scene may need.
+struct Ablation {
+  struct Cost { double stepSeconds = 0.0, megabytes = 0.0; };  ///< the quickest of kAblationRounds; on the device
+  std::string technique;
+  Cost needed, all;
+};
+constexpr uint32_t kAblationRounds = 8;
+
 struct SceneResult {
   std::string name, file, hash;
   uint64_t triangles = 0;
@@ -40,15 +48,21 @@ struct SceneResult {
   std::vector<std::string> unsupported;///< features of the file
   std::vector<Run> runs;
   std::vector<Curve> curves;
+  std::vector<Ablation> ablations;
 };
 constexpr double kReferenceMargin = 20.0;
 
 /// Time and memory against one size of the scene or picture, for one technique.
 struct Growth {
-  std::string technique, axis;         ///< "triangles", "lights", "pixels"
-  struct Point { double size = 0.0, stepSeconds = 0.0, megabytes = 0.0, buildSeconds = 0.0; };
+  std::string technique, axis;         ///< "triangles", "lights", "points", "pixels"
+  struct Point {
+    double size = 0.0;
+    double stepSeconds = 0.0;          ///< of a later step
+    double firstSeconds = 0.0;         ///< of the first steps together, and with them what is done once
+    double megabytes = 0.0, buildSeconds = 0.0;
+  };
   std::vector<Point> points;
-  std::optional<PowerFit> time, memory, build;
+  std::optional<PowerFit> time, first, memory, build;
 };
 
 /// Calibration of the films' own error estimates, against relMSE with and without the largest quotients.

@@ -6,6 +6,7 @@
 
 #include "renderer/film/exr.hpp"
 #include "renderer/vk/device.hpp"
+#include "server/limn/bench_ablation.hpp"
 #include "server/limn/bench_page.hpp"
 #include "server/limn/bench_reference.hpp"
 #include "server/limn/hex_text.hpp"
@@ -45,6 +46,8 @@ class SceneBench {
   Result<SceneResult> run(const std::vector<PeerPicture>& pictures) {
     if (Result<void> done = load(pictures); !done) return done.error();
     if (Result<void> done = measureAll(); !done) return done.error();
+    if (m_options.ablation)
+      if (Result<void> done = measureAblations(); !done) return done.error();
     Result<ReferencePictures> reference = makeReference();
     if (!reference) return reference.error();
     if (Result<void> done = reportCurves(*reference); !done) return done.error();
@@ -70,14 +73,28 @@ class SceneBench {
     return {};
   }
 
+  SessionConfig configOf(const std::string& technique) const {
+    SessionConfig config;
+    config.width = m_options.width;
+    config.height = m_options.height;
+    config.technique = technique;
+    config.parameters = parametersOf(*findTechnique(technique), m_options.settings);
+    return config;
+  }
+
+  Result<void> measureAblations() {
+    for (const std::string& name : m_options.techniques) {
+      Result<Ablation> ablation = measureAblation(m_device, m_loaded, configOf(name));
+      if (!ablation) return ablation.error();
+      m_result.ablations.push_back(ablation.take());
+    }
+    return {};
+  }
+
   Result<void> measureAll() {
     for (const std::string& name : m_options.techniques)
       for (uint32_t seed = 0; seed < m_options.seeds; ++seed) {
-        SessionConfig config;
-        config.width = m_options.width;
-        config.height = m_options.height;
-        config.technique = name;
-        config.parameters = parametersOf(*findTechnique(name), m_options.settings);
+        SessionConfig config = configOf(name);
         config.seed = seed;
         Result<Run> run = measureRun(m_device, m_loaded, config, m_options.budgets);
         if (!run) return run.error();

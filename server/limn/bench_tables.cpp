@@ -27,14 +27,23 @@ std::string csvLine(const std::vector<std::string>& fields) {
 
 const std::vector<std::string> kColumns = {
     "scene",     "technique", "seed", "budget", "seconds",  "steps",    "samples",       "gatheredShare",    "relMse",
-    "relMseAll", "estimate",  "low",  "high",   "nonFinite", "filmHash", "raysPerSecond", "discardedSamples"};
+    "relMseAll", "estimate",  "low",  "high",   "nonFinite", "filmHash", "raysPerSecond", "discardedSamples",
+    "stepSeconds", "stepSecondsAllNeeds"};
+
+/// Of the ablation; empty where it was not measured.
+std::string stepSeconds(const SceneResult& scene, const Run& run, Ablation::Cost Ablation::*cost) {
+  for (const Ablation& ablation : scene.ablations)
+    if (ablation.technique == run.technique) return csvNumber((ablation.*cost).stepSeconds);
+  return "";
+}
 
 std::vector<std::string> rowOf(const SceneResult& scene, const Run& run, const Budget& budget, const Checkpoint& c) {
   return {scene.name, run.technique, std::to_string(run.seed), budget.text, csvNumber(c.seconds),
           std::to_string(c.steps), csvNumber(c.samples), csvNumber(c.gatheredShare), csvNumber(c.relMse),
           csvNumber(c.relMseAll), csvNumber(c.estimate), csvNumber(c.low), csvNumber(c.high),
           std::to_string(c.nonFinite), hexText(c.filmHash), csvNumber(run.status.raysPerSecond),
-          std::to_string(run.status.discardedSamples)};
+          std::to_string(run.status.discardedSamples), stepSeconds(scene, run, &Ablation::needed),
+          stepSeconds(scene, run, &Ablation::all)};
 }
 
 /// Another renderer's picture has no run of ours.
@@ -122,8 +131,19 @@ void writeRun(JsonWriter& json, const Run& run) {
   json.field("raysPerSecond", run.status.raysPerSecond);
   json.field("discardedSamples", run.status.discardedSamples);
   json.field("memory", run.status.memory);
+  json.field("hostMemory", run.status.hostMemory);
   json.field("ran", run.status.ran);
   json.field("leftOut", run.status.leftOut);
+  json.endObject();
+}
+
+void writeAblation(JsonWriter& json, const Ablation& ablation) {
+  json.beginObject();
+  json.field("technique", ablation.technique);
+  json.field("stepSeconds", ablation.needed.stepSeconds);
+  json.field("stepSecondsAllNeeds", ablation.all.stepSeconds);
+  json.field("megabytes", ablation.needed.megabytes);
+  json.field("megabytesAllNeeds", ablation.all.megabytes);
   json.endObject();
 }
 
@@ -149,6 +169,10 @@ void writeScene(JsonWriter& json, const SceneResult& scene) {
   json.beginArray();
   for (const Run& run : scene.runs) writeRun(json, run);
   json.endArray();
+  json.key("ablation");
+  json.beginArray();
+  for (const Ablation& ablation : scene.ablations) writeAblation(json, ablation);
+  json.endArray();
   json.endObject();
 }
 
@@ -171,12 +195,14 @@ void writeGrowth(JsonWriter& json, const Growth& growth) {
     json.beginObject();
     json.field("size", point.size);
     json.field("stepSeconds", point.stepSeconds);
+    json.field("firstSeconds", point.firstSeconds);
     json.field("megabytes", point.megabytes);
     json.field("buildSeconds", point.buildSeconds);
     json.endObject();
   }
   json.endArray();
   writeFit(json, "time", growth.time);
+  writeFit(json, "first", growth.first);
   writeFit(json, "memory", growth.memory);
   writeFit(json, "build", growth.build);
   json.endObject();

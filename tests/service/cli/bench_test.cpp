@@ -62,7 +62,8 @@ class Bench : public ::testing::Test {
 };
 
 TEST_F(Bench, WritesATableAPageAndItsFigures) {
-  const test::ProgramRun done = run("whole", {"--scenes", kScene, "--budgets", "0.05,0.02", "--seeds", "2"});
+  const test::ProgramRun done = run("whole", {"--scenes", kScene, "--budgets", "0.05,0.02", "--seeds", "2",
+                                           "--ablation"});
   ASSERT_EQ(done.exitCode, 0) << done.err;
   EXPECT_THAT(done.out, HasSubstr("intervals hold the error"));
 
@@ -73,6 +74,8 @@ TEST_F(Bench, WritesATableAPageAndItsFigures) {
     EXPECT_GE(std::stod(row.at("seconds")), std::stod(row.at("budget")));
     EXPECT_TRUE(std::isfinite(std::stod(row.at("relMse"))));
     EXPECT_EQ(row.at("nonFinite"), "0");
+    EXPECT_GT(std::stod(row.at("stepSeconds")), 0.0);
+    EXPECT_GT(std::stod(row.at("stepSecondsAllNeeds")), 0.0);
   }
   EXPECT_EQ(results.rows[0].at("budget"), "0.02");
   EXPECT_EQ(results.rows[1].at("budget"), "0.05");
@@ -86,11 +89,16 @@ TEST_F(Bench, WritesATableAPageAndItsFigures) {
   EXPECT_EQ(curves[0].find("points")->array()->size(), 2u);
   EXPECT_EQ(curves[0].find("secondsToError")->array()->size(), 5u);
   EXPECT_EQ(json->find("calibration")->array()->size(), techniqueInfos().size());
+  const auto& ablation = *scenes[0].find("ablation")->array();
+  ASSERT_EQ(ablation.size(), techniqueInfos().size());
+  for (const auto& measured : ablation)
+    EXPECT_GE(*measured.find("megabytesAllNeeds")->number(), *measured.find("megabytes")->number() * 0.99);
 
   const std::string page = test::readText(file("whole/index.html"));
   EXPECT_THAT(page, HasSubstr("</html>"));
   EXPECT_THAT(page, HasSubstr("src=\"data:image/png;base64,iVBORw0KGgo"));  // the first bytes of every PNG
   EXPECT_THAT(page, HasSubstr("seconds to relMSE"));
+  EXPECT_THAT(page, HasSubstr("What leaving out saves"));
   EXPECT_THAT(page, Not(HasSubstr("src=\"http")));
   EXPECT_THAT(page, Not(HasSubstr("href=")));
 }
