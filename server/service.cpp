@@ -15,7 +15,6 @@ constexpr double kStatusSeconds = 0.25;
 std::string_view wireCode(std::string_view code) {
   const auto& known = protocol::kErrorCodes;
   if (std::find(known.begin(), known.end(), code) != known.end()) return code;
-  if (code == "path") return protocol::kErrorIo;
   if (code == "size") return protocol::kErrorOutOfRange;
   if (code == "out-of-memory") return protocol::kErrorLimit;
   if (code.starts_with("unknown-")) return protocol::kErrorUnknownName;

@@ -81,7 +81,8 @@ class Service : private TransportHandler {
   // service_messages.cpp: what clients say
   friend struct MessageHandler;
   void greet(ClientSession& session, const protocol::ClientHello& hello);
-  void edit(ClientSession& session, uint32_t seq, const std::vector<protocol::Edit>& edits);
+  /// `batch`: the edits stand in a list of the message's, not in the message itself.
+  void edit(ClientSession& session, uint32_t seq, const std::vector<protocol::Edit>& edits, bool batch = false);
   void ask(ClientSession& session, uint32_t seq, Request request);
 
   // service_replies.cpp: what the renderer says
@@ -119,6 +120,7 @@ class Service : private TransportHandler {
 
   View m_view;                             ///< as the edits sent so far leave it; completes lenses of camera edits
   std::set<std::pair<ConnectionId, uint32_t>> m_viewEdits;  ///< client and seq of those that were not answered yet
+  std::set<std::pair<ConnectionId, uint32_t>> m_batches;    ///< the same
   std::set<ConnectionId> m_editors;        ///< edited since the others were last told
   bool m_describing = false;               ///< a describe of our own is on its way
   bool m_viewDoubtful = true;              ///< an edit was refused, or nothing is known yet

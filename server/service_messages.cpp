@@ -57,7 +57,7 @@ struct MessageHandler {
     service.edit(session, camera.seq, {protocol::CameraEdit{camera.view}});
   }
   void operator()(const protocol::SetMessage& set) const { service.edit(session, set.seq, {set.edit}); }
-  void operator()(const protocol::Batch& batch) const { service.edit(session, batch.seq, batch.edits); }
+  void operator()(const protocol::Batch& batch) const { service.edit(session, batch.seq, batch.edits, true); }
   void operator()(const protocol::Pick& pick) const {
     service.ask(session, pick.seq, PickRequest{{session.id(), pick.seq}, pick.x, pick.y});
   }
@@ -153,7 +153,7 @@ void Service::greet(ClientSession& session, const protocol::ClientHello& hello) 
   logInfo("client " + std::to_string(session.id()) + ": " + printable(hello.client));
 }
 
-void Service::edit(ClientSession& session, uint32_t seq, const std::vector<protocol::Edit>& edits) {
+void Service::edit(ClientSession& session, uint32_t seq, const std::vector<protocol::Edit>& edits, bool batch) {
   EditRequest request{{session.id(), seq}, {}, nowSeconds()};
   View view = m_view;
   bool moves = false;
@@ -174,6 +174,7 @@ void Service::edit(ClientSession& session, uint32_t seq, const std::vector<proto
     m_view = view;
     m_viewEdits.emplace(session.id(), seq);
   }
+  if (batch) m_batches.emplace(session.id(), seq);
   session.lastEditSeq = seq;
   ++m_counters.edits;
 }

@@ -11,6 +11,14 @@ namespace {
 constexpr double kBroadcastSeconds = 0.25;   ///< between two scenes sent because somebody else edits
 constexpr ConnectionId kNobody = 0;
 
+/// The renderer's place, "/edits/N/field" of a request, as the place in the message that asked.
+std::string placeInMessage(std::string place, uint32_t seq, bool batch) {
+  const std::string only = "/edits/0";
+  if (!place.starts_with("/edits/")) return place;
+  if (!batch && place.starts_with(only)) place.erase(0, only.size());
+  return "seq " + std::to_string(seq) + (place.empty() ? "" : " ") + place;
+}
+
 std::optional<float> finite(float value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; }
 
 }  // namespace
@@ -23,6 +31,7 @@ struct ReplyHandler {
 
   void operator()(const EditAck& ack) const {
     service.m_viewEdits.erase({ack.to.client, ack.to.seq});
+    service.m_batches.erase({ack.to.client, ack.to.seq});
     const bool effective = !ack.superseded && ack.cost != CostClass::none;
     if (effective) service.m_editors.insert(ack.to.client);
     if (!session) return;
@@ -32,12 +41,15 @@ struct ReplyHandler {
   }
   void operator()(const ErrorReply& reply) const {
     if (service.m_viewEdits.erase({reply.to.client, reply.to.seq}) > 0) service.m_viewDoubtful = true;
+    const bool batch = service.m_batches.erase({reply.to.client, reply.to.seq}) > 0;
     if (reply.to.client == kNobody) return service.tellAll(reply.error);
     if (!session) return;
     session->saving = false;
     session->loading = false;
     forgetEdit(reply.to.seq);
-    service.sendError(*session, reply.to.seq, reply.error);
+    Error error = reply.error;
+    error.place = placeInMessage(std::move(error.place), reply.to.seq, batch);
+    service.sendError(*session, reply.to.seq, error);
   }
   void operator()(const DescribeReply& reply) const {
     service.learnView(*reply.scene);

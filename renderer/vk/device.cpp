@@ -132,6 +132,7 @@ Result<void> Device::init() {
   logInfo("device " + std::to_string(m_info.index) + ": " + m_info.name + " (" + m_info.type + "), Vulkan " +
           m_info.apiVersion + ", driver " + m_info.driver + ", version " + m_info.driverVersion +
           (m_features.rayQuery ? ", ray query" : ", no ray query") +
+          (m_instance->validation() ? ", validation layer on" : "") +
           (m_pipelineCache->loaded() ? ", pipeline cache loaded" : ""));
   return {};
 }

@@ -1,10 +1,14 @@
 #include "renderer/vk/instance.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <cstring>
 
 #include "renderer/base/log.hpp"
+#include "renderer/vk/test_environment.hpp"
 
 namespace limn::vk {
 namespace {
@@ -21,7 +25,9 @@ VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT 
   const std::string text = data->pMessage ? data->pMessage : "";
   const bool isError = (severity & VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT) != 0;
   log(isError ? LogLevel::error : LogLevel::warning, "validation: " + text);
-  static_cast<ValidationLog*>(user)->add(text);
+  auto& messages = *static_cast<ValidationLog*>(user);
+  messages.add(text);
+  if (messages.endsProcess()) _exit(EXIT_FAILURE);
   return VK_FALSE;
 }
 
@@ -69,11 +75,13 @@ std::vector<std::string> ValidationLog::texts() const {
   return m_texts;
 }
 
-Result<std::unique_ptr<Instance>> Instance::create(bool validation) {
+Result<std::unique_ptr<Instance>> Instance::create(bool wanted) {
+  const bool forced = testEnvironment().validation, validation = wanted || forced;
   if (validation && !layerPresent(kValidationLayer)) {
     return Error{"unsupported", std::string(kValidationLayer) + " is not installed", ""};
   }
   std::unique_ptr<Instance> instance(new Instance);
+  if (forced) instance->m_log->endProcessAtMessages();
   instance->m_debugUtils = extensionPresent(nullptr, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) ||
                            (validation && extensionPresent(kValidationLayer, VK_EXT_DEBUG_UTILS_EXTENSION_NAME));
 

@@ -18,14 +18,19 @@ class ValidationLog {
   uint64_t count() const { return m_count.load(); }
   /// The first kKeptTexts messages.
   std::vector<std::string> texts() const;
+  /// From now on a message ends the process with exit 1, once it is logged.
+  void endProcessAtMessages() { m_endsProcess = true; }
+  bool endsProcess() const { return m_endsProcess; }
 
  private:
   std::atomic<uint64_t> m_count{0};
   mutable std::mutex m_mutex;
   std::vector<std::string> m_texts;
+  bool m_endsProcess = false;  ///< set before the messenger is made
 };
 
-/// VkInstance with, on request, the validation layer and a messenger that feeds `log()`.
+/// VkInstance with, on request or where TestEnvironment asks for it, the validation layer and a messenger that feeds
+/// `log()`.
 class Instance {
  public:
   static Result<std::unique_ptr<Instance>> create(bool validation);
@@ -35,6 +40,7 @@ class Instance {
 
   VkInstance handle() const { return m_handle; }
   bool hasDebugUtils() const { return m_debugUtils; }
+  bool validation() const { return m_messenger != VK_NULL_HANDLE; }
   /// Outlives the instance for who holds it, so that the messages of its end are seen too.
   std::shared_ptr<const ValidationLog> log() const { return m_log; }
   /// In the driver's order, which is the order of Device::list().

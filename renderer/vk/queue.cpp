@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "renderer/vk/device.hpp"
+#include "renderer/vk/test_environment.hpp"
 
 namespace limn::vk {
 namespace {
@@ -14,6 +15,7 @@ constexpr uint32_t kDescriptorsPerPool = 512;  // of each kind: more than 64 set
 
 Result<std::unique_ptr<Queue>> Queue::create(Device& device) {
   std::unique_ptr<Queue> queue(new Queue(device));
+  queue->m_loseAt = testEnvironment().loseDeviceAt;
   vkGetDeviceQueue(device.handle(), device.queueFamily(), 0, &queue->m_handle);
   device.setName(VK_OBJECT_TYPE_QUEUE, uint64_t(queue->m_handle), "queue");
   auto type = typed<VkSemaphoreTypeCreateInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO);
@@ -104,11 +106,16 @@ Result<uint64_t> Queue::submit(CommandSlot& slot) {
   info.pCommandBufferInfos = &commands;
   info.signalSemaphoreInfoCount = 1;
   info.pSignalSemaphoreInfos = &signal;
-  if (const VkResult r = vkQueueSubmit2(m_handle, 1, &info, VK_NULL_HANDLE); r != VK_SUCCESS) {
-    return note(r, "vkQueueSubmit2");
-  }
+  if (const VkResult r = submitToDriver(info); r != VK_SUCCESS) return note(r, "vkQueueSubmit2");
   slot.doneAt = ++m_lastSubmitted;
   return m_lastSubmitted;
+}
+
+VkResult Queue::submitToDriver(const VkSubmitInfo2& info) {
+  if (m_lastSubmitted + 1 != m_loseAt) return vkQueueSubmit2(m_handle, 1, &info, VK_NULL_HANDLE);
+  // A device that is lost works no more on what it was given: the pretended one must not either.
+  (void)wait(m_lastSubmitted, ~uint64_t(0));
+  return VK_ERROR_DEVICE_LOST;
 }
 
 Result<void> Queue::wait(uint64_t value, uint64_t timeoutNs) {

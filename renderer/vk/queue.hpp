@@ -3,6 +3,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "renderer/vk/vulkan.hpp"
@@ -46,6 +47,7 @@ class Queue {
  private:
   explicit Queue(Device& device) : m_device(device) {}
   Error note(VkResult result, const char* call);
+  VkResult submitToDriver(const VkSubmitInfo2& info);
   Result<CommandSlot*> createSlot();
   Result<void> addDescriptorPool(CommandSlot& slot);
   void destroyRetired();
@@ -61,6 +63,7 @@ class Queue {
   uint64_t m_lastSubmitted = 0;
   mutable uint64_t m_lastReached = 0;  ///< spares asking the driver again
   bool m_lost = false;
+  std::optional<uint64_t> m_loseAt;    ///< TestEnvironment::loseDeviceAt
   std::vector<std::unique_ptr<CommandSlot>> m_slots;
   std::deque<Retired> m_retired;
 };

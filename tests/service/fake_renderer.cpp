@@ -81,10 +81,12 @@ void FakeRenderer::run() {
 void FakeRenderer::handle(const Request& request) {
   if (const auto* edit = std::get_if<EditRequest>(&request)) {
     EditAck ack{edit->from, CostClass::relight, 0, 0, false};
-    for (const Edit& one : edit->edits) {
+    for (size_t i = 0; i < edit->edits.size(); ++i) {
+      const Edit& one = edit->edits[i];
       const auto* material = std::get_if<SetMaterial>(&one);
+      const std::string place = "/edits/" + std::to_string(i) + "/material";
       if (material && material->material >= m_options.materials)
-        return m_replies.push(ErrorReply{edit->from, {"out-of-range", "no such material", "material"}});
+        return m_replies.push(ErrorReply{edit->from, {"out-of-range", "no such material", place}});
       if (const auto* view = std::get_if<SetView>(&one)) {
         m_scene.view = view->view;
         ++m_scene.viewRevision;

@@ -4,72 +4,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/service/child_process.hpp"
-#include "tests/service/service_fixture.hpp"
+#include "tests/service/daemon_fixture.hpp"
 
 namespace limn::server::testing {
 namespace {
 
 namespace fs = std::filesystem;
-
-const std::string kProgram = LIMN_BUILD_DIR "/bin/limnd";
-const std::string kScene = LIMN_BUILD_DIR "/scenes/cornell-box.glb";
-
-/// A daemon that is ready to take clients.
-class Daemon {
- public:
-  explicit Daemon(std::vector<std::string> more = {}) : process(kProgram, words(std::move(more))) {
-    const std::string line = process.readLine();
-    const std::string begin = "listening on http://127.0.0.1:";
-    EXPECT_TRUE(line.starts_with(begin)) << line;
-    if (line.starts_with(begin)) port = uint16_t(std::stoi(line.substr(begin.size())));
-  }
-  ChildProcess process;
-  uint16_t port = 0;
-
- private:
-  static std::vector<std::string> words(std::vector<std::string> more) {
-    std::vector<std::string> all{"--scene", kScene, "--listen", "127.0.0.1:0", "--size", "64x64",
-                                 "--state-dir", LIMN_BUILD_DIR "/tests/state"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
-};
-
-/// A film that is done soon.
-void endAfter(TestClient& client, double samples) {
-  protocol::TechniqueEdit edit;
-  edit.parameters = {{"maxSamples", samples}};
-  const uint32_t seq = client.nextSeq();
-  client.send(protocol::SetMessage{seq, edit});
-  client.awaitReply<protocol::Ack>(seq);
-}
-
-uint64_t convergedHash(TestClient& client) {
-  const uint32_t seq = client.nextSeq();
-  client.send(protocol::Wait{seq, std::nullopt, std::nullopt});
-  return client.awaitReply<protocol::Waited>(seq).filmHash.value;
-}
-
-std::vector<uint8_t> pictureAtRest(TestClient& client, uint32_t edit) {
-  const auto last =
-      client.awaitPicture([&](const auto& h) { return (h.flags & protocol::kFrameFinal) && h.ackSeq >= edit; });
-  uint32_t width = 0, height = 0;
-  return decodeImage(last.payload, last.header.encoding, width, height);
-}
-
-/// Those that the generator names in expected.json.
-std::vector<std::string> malformedFiles() {
-  std::ifstream in(LIMN_BUILD_DIR "/scenes/malformed/expected.json");
-  std::vector<std::string> files;
-  const std::string key = "\"file\": \"";
-  for (std::string line; std::getline(in, line);)
-    if (const size_t at = line.find(key); at != std::string::npos) {
-      const size_t begin = at + key.size();
-      files.push_back(line.substr(begin, line.find('"', begin) - begin));
-    }
-  return files;
-}
 
 TEST(Limnd, anEditShowsInThePictureAndItConvergesAgain) {
   Daemon daemon;
@@ -108,35 +48,8 @@ TEST(Limnd, anEditThatChangesNothingRestartsNothing) {
   EXPECT_EQ(client.awaitReply<protocol::Ack>(seq).cost, protocol::CostClass::none);
 }
 
-TEST(Limnd, malformedMessagesAndFilesLeaveTheSceneAsItIs) {
-  Daemon daemon({"--asset-root", LIMN_BUILD_DIR "/scenes"});
-  TestClient client(daemon.port);
-  client.greet();
-  endAfter(client, 4);
-  const uint64_t before = convergedHash(client);
-  const std::string unknown = R"({"op":"explode","seq":)" + std::to_string(client.nextSeq()) + "}";
-  for (const std::string& text :
-       {std::string("{"), std::string(R"({"op":"set","target":"material"})"), unknown, std::string("[]")}) {
-    client.sendWrong(text);
-    client.await<protocol::ErrorMessage>();
-  }
-  client.send(setRoughness(client.nextSeq(), 4'000'000'000u, 0.5f));
-  EXPECT_EQ(client.await<protocol::ErrorMessage>().code, "out-of-range");
-  uint32_t files = 0;
-  for (const std::string& file : malformedFiles()) {
-    const uint32_t seq = client.nextSeq();
-    client.send(protocol::Load{seq, "malformed/" + file});
-    const auto error = client.await<protocol::ErrorMessage>();
-    EXPECT_EQ(error.seq, seq) << file;
-    EXPECT_FALSE(error.place.value_or("").empty()) << file;
-    ++files;
-  }
-  EXPECT_GE(files, 20u);
-  EXPECT_EQ(convergedHash(client), before);
-}
-
 TEST(Limnd, anotherSceneIsLoadedAndShown) {
-  Daemon daemon({"--asset-root", LIMN_BUILD_DIR "/scenes"});
+  Daemon daemon({"--asset-root", kScenes});
   TestClient client(daemon.port);
   client.greet();
   const auto first = client.await<protocol::SceneMessage>();

@@ -1,79 +1,20 @@
 // Wrong messages are answered with the right error, and everything goes on as before.
 #include "tests/service/service_fixture.hpp"
+#include "tests/service/wrong_messages.hpp"
 
 namespace limn::server::testing {
 namespace {
-
-struct Wrong {
-  const char* name;
-  std::string text;
-  const char* code;
-};
-
-std::string nested(size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); }
-
-/// Each is sent after hello (seq 1); the seqs rise from case to case.
-const std::vector<Wrong>& wrongMessages() {
-  static const std::vector<Wrong> cases{
-      {"empty", "", "bad-message"},
-      {"notJson", "hello", "bad-message"},
-      {"halfAnObject", R"({"op":"ping","seq":2)", "bad-message"},
-      {"trailingBytes", R"({"op":"ping","seq":2} x)", "bad-message"},
-      {"anArray", R"([1,2,3])", "bad-message"},
-      {"aNumber", "7", "bad-message"},
-      {"noOp", R"({"seq":3})", "bad-message"},
-      {"opOfWrongType", R"({"op":7,"seq":4})", "bad-message"},
-      {"unknownOp", R"({"op":"explode","seq":5})", "unknown-op"},
-      {"noSeq", R"({"op":"ping"})", "bad-message"},
-      {"seqZero", R"({"op":"ping","seq":0})", "out-of-range"},
-      {"seqNegative", R"({"op":"ping","seq":-1})", "out-of-range"},
-      {"seqTooLarge", R"({"op":"ping","seq":4294967296})", "out-of-range"},
-      {"seqNotWhole", R"({"op":"ping","seq":6.5})", "bad-message"},
-      {"seqDoesNotRise", R"({"op":"ping","seq":1})", "bad-seq"},
-      {"unknownField", R"({"op":"ping","seq":10,"extra":1})", "bad-message"},
-      {"fieldTwice", R"({"op":"ping","seq":11,"seq":12})", "bad-message"},
-      {"missingField", R"({"op":"pick","seq":13,"x":1})", "bad-message"},
-      {"wrongType", R"({"op":"pick","seq":14,"x":"1","y":1})", "bad-message"},
-      {"outOfRange", R"({"op":"set","seq":15,"target":"material","material":0,"roughness":2})", "out-of-range"},
-      {"notANumber", R"({"op":"set","seq":16,"target":"material","material":0,"roughness":NaN})", "bad-message"},
-      {"tooLargeForDouble", R"({"op":"set","seq":17,"target":"light","light":0,"intensity":1e999})", "out-of-range"},
-      {"noTarget", R"({"op":"set","seq":18,"material":0})", "bad-message"},
-      {"unknownTarget", R"({"op":"set","seq":19,"target":"cloud"})", "out-of-range"},
-      {"indexOutOfRange", R"({"op":"set","seq":20,"target":"material","material":99,"roughness":0.5})", "out-of-range"},
-      {"shortVector", R"({"op":"camera","seq":21,"eye":[0,0],"target":[0,0,0],"up":[0,1,0]})", "bad-message"},
-      {"emptyBatch", R"({"op":"batch","seq":22,"edits":[]})", "out-of-range"},
-      {"wrongEditInBatch",
-       R"({"op":"batch","seq":23,"edits":[{"target":"light","light":0},{"target":"light","light":0,"range":-1}]})",
-       "out-of-range"},
-      {"unknownToneMap", R"({"op":"set","seq":24,"target":"resolve","toneMap":"sepia"})", "out-of-range"},
-      {"imageTooLarge", R"({"op":"set","seq":25,"target":"image","width":8192,"height":64})", "out-of-range"},
-      {"imageTooSmall", R"({"op":"set","seq":26,"target":"image","width":1,"height":64})", "out-of-range"},
-      {"ackOfNoFrame", R"({"op":"ackFrame","seq":27,"frameId":4000000000,"dropped":false})", "bad-ack"},
-      {"unknownLayer", R"({"op":"save","seq":28,"layers":["smell"]})", "unknown-name"},
-      {"secondHello", R"({"op":"hello","seq":29,"version":1,"client":"again"})", "hello-first"},
-      {"deepNesting", R"({"op":"batch","seq":30,"edits":)" + nested(64) + "}", "limit"},
-      {"veryDeepNesting", nested(200000), "limit"},
-      {"loneSurrogate", R"({"op":"load","seq":31,"uri":"\ud800"})", "bad-message"},
-      {"controlCharacter", "{\"op\":\"load\",\"seq\":32,\"uri\":\"a\nb\"}", "bad-message"},
-      {"longString", R"({"op":"load","seq":33,"uri":")" + std::string(5000, 'a') + "\"}", "out-of-range"},
-      {"absolutePath", R"({"op":"load","seq":34,"uri":"/etc/passwd"})", "io"},
-      {"pathOutOfTheRoot", R"({"op":"load","seq":35,"uri":"../../etc/passwd"})", "io"},
-      {"noSuchFile", R"({"op":"load","seq":36,"uri":"no-such-scene.glb"})", "io"},
-      {"directoryAsFile", R"({"op":"load","seq":37,"uri":"."})", "io"},
-      {"unknownView", R"({"op":"set","seq":38,"target":"resolve","view":"camera"})", "out-of-range"},
-  };
-  return cases;
-}
 
 TEST(Malformed, eachIsAnsweredWithItsErrorAndTheServerGoesOn) {
   TestService server;
   TestClient client(server.port());
   client.greet(false);
   const auto before = client.await<protocol::SceneMessage>();
-  for (const Wrong& wrong : wrongMessages()) {
+  for (const WrongMessage& wrong : wrongMessages()) {
     client.sendWrong(wrong.text);
     const auto error = client.await<protocol::ErrorMessage>();
-    EXPECT_EQ(error.code, wrong.code) << wrong.name << ": " << error.message << " at " << error.place.value_or("-");
+    EXPECT_EQ(error.code, wrong.code) << wrong.name << ": " << error.message;
+    EXPECT_EQ(error.place.value_or(""), wrong.place) << wrong.name << ": " << error.message;
     EXPECT_FALSE(error.message.empty()) << wrong.name;
   }
   client.send(protocol::Describe{1000});
