@@ -169,3 +169,11 @@ export function decodeFrame(message: ArrayBuffer): { header: FrameHeader; payloa
   if (crc32c(payload) !== header.crc32c) throw new ProtocolError("bad-message", "the payload's CRC is wrong", "byte 0");
   return { header, payload };
 }
+
+/** The binary message of a header and its payload, whose length and CRC are taken from `payload`. Throws ProtocolError. */
+export function encodeFrame(header: FrameHeader, payload: Uint8Array): ArrayBuffer {
+  const message = new ArrayBuffer(kFrameHeaderBytes + payload.length);
+  encodeFrameHeader({ ...header, payloadBytes: payload.length, crc32c: crc32c(payload) }, new DataView(message));
+  new Uint8Array(message, kFrameHeaderBytes).set(payload);
+  return message;
+}

@@ -109,7 +109,29 @@ def frame_header(schema):
             out.append(f"    {f['name']}: [{items}],")
         else:
             out.append(f"    {f['name']}: view.{getter[f['type']].format(offset)},")
-    return out + ["  };", "}", ""]
+    return out + ["  };", "}", "", *frame_header_writer(layout)]
+
+
+def frame_header_writer(layout):
+    setter = {"u8": "setUint8({}, {})", "u16": "setUint16({}, {}, true)", "u32": "setUint32({}, {}, true)",
+              "f32": "setFloat32({}, {}, true)"}
+    out = ["/** Writes a header, little-endian. Throws ProtocolError where a word is not one of the schema's. */",
+           "function encodeFrameHeader(header: FrameHeader, view: DataView): void {",
+           "  const index = <T>(words: readonly T[], word: T, offset: number): number => {",
+           "    const found = words.indexOf(word);",
+           '    if (found < 0) throw new ProtocolError("out-of-range", "unknown value", `byte ${offset}`);',
+           "    return found;", "  };"]
+    for f, offset in layout:
+        name = f"header.{f['name']}"
+        values = [name]
+        if "value" in f:
+            values = [f["value"]]
+        elif "enum" in f:
+            values = [f"index(k{f['enum']}s, {name}, {offset})"]
+        elif "count" in f:
+            values = [f"{name}[{i}] as number" for i in range(f["count"])]
+        out += [f"  view.{setter[f['type']].format(offset + 4 * i, value)};" for i, value in enumerate(values)]
+    return out + ["}", ""]
 
 
 def constants(schema):

@@ -47,6 +47,11 @@ describe('golden frames', () => {
     expect(frame.payload.length).toBe(frame.header.payloadBytes);
   });
 
+  it.each(['frame_moving', 'frame_final', 'frame_file'])('%s is written as it was read', (name) => {
+    const { header, payload } = protocol.decodeFrame(frameBytes(name));
+    expect(new Uint8Array(protocol.encodeFrame(header, payload))).toEqual(new Uint8Array(frameBytes(name)));
+  });
+
   it('a changed payload is found by its CRC', () => {
     const bytes = frameBytes('frame_moving');
     new Uint8Array(bytes)[protocol.kFrameHeaderBytes] = 0;

@@ -605,6 +605,54 @@ export function decodeFrameHeader(view: DataView): FrameHeader {
   };
 }
 
+/** Writes a header, little-endian. Throws ProtocolError where a word is not one of the schema's. */
+function encodeFrameHeader(header: FrameHeader, view: DataView): void {
+  const index = <T>(words: readonly T[], word: T, offset: number): number => {
+    const found = words.indexOf(word);
+    if (found < 0) throw new ProtocolError("out-of-range", "unknown value", `byte ${offset}`);
+    return found;
+  };
+  view.setUint32(0, 827215180, true);
+  view.setUint8(4, 1);
+  view.setUint8(5, index(kFrameKinds, header.kind, 5));
+  view.setUint8(6, index(kEncodings, header.encoding, 6));
+  view.setUint8(7, header.flags);
+  view.setUint8(8, index(kPhases, header.phase, 8));
+  view.setUint8(9, header.quality);
+  view.setUint8(10, header.stageCount);
+  view.setUint8(11, 0);
+  view.setUint32(12, header.frameId, true);
+  view.setUint32(16, header.ackSeq, true);
+  view.setUint32(20, header.sceneRevision, true);
+  view.setUint32(24, header.viewRevision, true);
+  view.setUint16(28, header.x, true);
+  view.setUint16(30, header.y, true);
+  view.setUint16(32, header.width, true);
+  view.setUint16(34, header.height, true);
+  view.setUint16(36, header.fullWidth, true);
+  view.setUint16(38, header.fullHeight, true);
+  view.setUint16(40, header.imageWidth, true);
+  view.setUint16(42, header.imageHeight, true);
+  view.setUint32(44, header.steps, true);
+  view.setUint32(48, header.replaced, true);
+  view.setFloat32(52, header.gatheredShare, true);
+  view.setFloat32(56, header.meanSamples, true);
+  view.setFloat32(60, header.estimatedError, true);
+  view.setFloat32(64, header.errorLow, true);
+  view.setFloat32(68, header.errorHigh, true);
+  view.setFloat32(72, header.msSinceEdit, true);
+  view.setFloat32(76, header.renderMs, true);
+  view.setFloat32(80, header.encodeMs, true);
+  view.setFloat32(84, header.stageMs[0] as number, true);
+  view.setFloat32(88, header.stageMs[1] as number, true);
+  view.setFloat32(92, header.stageMs[2] as number, true);
+  view.setFloat32(96, header.stageMs[3] as number, true);
+  view.setFloat32(100, header.stageMs[4] as number, true);
+  view.setFloat32(104, header.stageMs[5] as number, true);
+  view.setUint32(108, header.payloadBytes, true);
+  view.setUint32(112, header.crc32c, true);
+}
+
 const kEnums: { [name: string]: readonly string[] } = {
   CostClass: kCostClasss,
   Phase: kPhases,
@@ -1136,4 +1184,12 @@ export function decodeFrame(message: ArrayBuffer): { header: FrameHeader; payloa
   if (payload.length !== header.payloadBytes) throw new ProtocolError("bad-message", "the payload's length is wrong", "byte 0");
   if (crc32c(payload) !== header.crc32c) throw new ProtocolError("bad-message", "the payload's CRC is wrong", "byte 0");
   return { header, payload };
+}
+
+/** The binary message of a header and its payload, whose length and CRC are taken from `payload`. Throws ProtocolError. */
+export function encodeFrame(header: FrameHeader, payload: Uint8Array): ArrayBuffer {
+  const message = new ArrayBuffer(kFrameHeaderBytes + payload.length);
+  encodeFrameHeader({ ...header, payloadBytes: payload.length, crc32c: crc32c(payload) }, new DataView(message));
+  new Uint8Array(message, kFrameHeaderBytes).set(payload);
+  return message;
 }
