@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
-#include "renderer/film/file_bytes.hpp"
 #include "server/limn/bench_html.hpp"
 #include "server/limn/bench_page_parts.hpp"
 
