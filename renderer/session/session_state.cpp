@@ -6,6 +6,7 @@
 #include "renderer/gpu/needs_constants.hpp"
 #include "renderer/scene/clean_environment.hpp"
 #include "renderer/scene/scene_estimate.hpp"
+#include "renderer/session/first_stride.hpp"
 #include "renderer/session/session_impl.hpp"
 #include "renderer/vk/transfer.hpp"
 #include "shaders/shared/bindings.h"
@@ -152,10 +153,8 @@ Result<void> Session::Impl::restartFilm(CostClass cost) {
     pickPass = pass.take();
     if (auto warm = gpu::runNow(device, [&](vk::CommandRecorder& r) { pickPass.warmUp(r, all); }); !warm) return warm;
   }
-  // The finest grid that the first picture can wait for; one step of hysteresis keeps it from flickering between two.
-  const auto fits = [&](uint32_t stride, double share) { return technique->secondsToGrid(stride) <= config.firstFrameSeconds * share; };
-  if (firstStride < 8 && !fits(firstStride, 1.3)) firstStride *= 2;
-  else if (firstStride > 1 && fits(firstStride / 2, 0.8)) firstStride /= 2;
+  firstStride = nextFirstStride(firstStride, config.firstFrameSeconds,
+                                [&](uint32_t stride) { return technique->secondsToGrid(stride); });
   progress = {};
   progress.fillStride = 8;
   error = {};
