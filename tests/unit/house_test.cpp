@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 constexpr size_t kMaxLines = 400;
 
 const std::string kRoot = LIMN_SOURCE_DIR;
-const std::vector<std::string> kHouses{"renderer", "server", "shaders", "protocol", "web/src", "tests", "deploy"};
+const std::vector<std::string> kHouses{"renderer", "server", "shaders", "protocol", "web/src", "web/dev", "web/test",
+                                      "tests", "deploy"};
 const std::set<std::string> kSources{".cpp", ".hpp", ".h", ".comp", ".glsl", ".py", ".ts", ".mjs", ".css", ".html", ".cmake", ".sh"};
 
 bool isSource(const fs::path& file) {
