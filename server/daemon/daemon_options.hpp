@@ -29,8 +29,9 @@ struct DaemonOptions {
 /// The flags of limnd, for --help and the parser.
 CommandSpec daemonSpec();
 
-/// Flags, then what `--config` holds for those that were not given: a JSON object with the same names, texts, numbers,
-/// true, and lists for repeated flags. Reads the token file. Errors: "usage" and, for files, "io".
+/// Flags, then what `--config` holds for those that were not given: a JSON object with the same names, texts and
+/// numbers, and lists for repeated flags; every flag has a value, so there is neither true nor false. Reads the token
+/// file. Errors: "usage" and, for files, "io".
 Result<DaemonOptions> readDaemonOptions(const std::vector<std::string>& words);
 
 }  // namespace limn::server

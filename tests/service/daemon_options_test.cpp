@@ -113,6 +113,7 @@ TEST_F(DaemonOptionsTest, wrongConfigurationsAreErrors) {
   EXPECT_EQ(errorOf({"--config", file("b.json", "{")}).code, "usage");
   EXPECT_EQ(errorOf({"--config", file("c.json", R"({"scene":"a","colour":"red"})")}).code, "usage");
   EXPECT_EQ(errorOf({"--config", file("d.json", R"({"scene":{}})")}).code, "usage");
+  EXPECT_EQ(errorOf({"--config", file("f.json", R"({"scene":true})")}).code, "usage");
   EXPECT_EQ(errorOf({"--config", file("e.json", R"({"config":"x"})")}).code, "usage");
   EXPECT_EQ(errorOf({"--config", (m_directory / "absent").string()}).code, "io");
 }
