@@ -29,6 +29,10 @@ class Pass {
     return pass;
   }
 
+  /// As create(), and compiled also by drivers that do so at the first dispatch. Errors: as create(), "device-lost".
+  static Result<Pass> createWarm(vk::Device& device, const std::string& shader, const std::vector<vk::Binding>& like,
+                                 uint32_t pushConstantBytes, std::vector<uint32_t> specialization = {});
+
   template <class Push>
   void record(vk::CommandRecorder& recorder, const std::vector<vk::Binding>& bindings, const Push& push, uint32_t gx,
               uint32_t gy = 1) const {
@@ -63,6 +67,15 @@ Result<void> runNow(vk::Device& device, Record record) {
   auto value = device.submit(recorder);
   if (!value) return value.error();
   return device.wait(*value);
+}
+
+inline Result<Pass> Pass::createWarm(vk::Device& device, const std::string& shader,
+                                     const std::vector<vk::Binding>& like, uint32_t pushConstantBytes,
+                                     std::vector<uint32_t> specialization) {
+  auto pass = create(device, shader, like, pushConstantBytes, std::move(specialization));
+  if (!pass) return pass;
+  auto done = runNow(device, [&](vk::CommandRecorder& r) { pass->warmUp(r, like); });
+  return done ? std::move(pass) : Result<Pass>(done.error());
 }
 
 inline std::vector<vk::Binding> joined(std::vector<vk::Binding> a, const std::vector<vk::Binding>& b) {

@@ -15,27 +15,24 @@ class TailoredPass {
   TailoredPass(std::string shader, uint32_t pushConstantBytes, Constants constants = &needsConstants)
       : m_shader(std::move(shader)), m_pushConstantBytes(pushConstantBytes), m_constants(constants) {}
 
-  /// Compiled and warm afterwards: the first time, and where `mayCompile` says that a stop is no matter.
-  /// Errors: "device", "out-of-memory", "device-lost".
+  /// Compiled and warm afterwards: the first time, and where `mayCompile` says that a stop is no matter. What it has
+  /// made it keeps, whatever fails then. Errors: "device", "out-of-memory", "device-lost", PipelineAllowance::kSpent.
   Result<void> prepare(vk::Device& device, const std::vector<vk::Binding>& like, const SceneNeeds& needs, bool mayCompile) {
     const std::vector<uint32_t> wanted = m_constants(needs);
-    const bool stale = !m_tailored || (mayCompile && m_tailoredFor != wanted);
-    if (stale || m_tailoredFor == wanted) m_variant = PipelineVariant::tailored;
-    else m_variant = covers(wanted) ? PipelineVariant::superset : PipelineVariant::general;
-    if (!stale) return {};
-    auto tailored = Pass::create(device, m_shader, like, m_pushConstantBytes, wanted);
-    if (!tailored) return tailored.error();
-    m_tailored = tailored.take();
-    m_tailoredFor = wanted;
+    if (!m_tailored || (mayCompile && m_tailoredFor != wanted)) {
+      auto tailored = Pass::createWarm(device, m_shader, like, m_pushConstantBytes, wanted);
+      if (!tailored) return tailored.error();
+      m_tailored = tailored.take();
+      m_tailoredFor = wanted;
+    }
     if (!m_general) {
-      auto general = Pass::create(device, m_shader, like, m_pushConstantBytes, m_constants(allNeeds()));
+      auto general = Pass::createWarm(device, m_shader, like, m_pushConstantBytes, m_constants(allNeeds()));
       if (!general) return general.error();
       m_general = general.take();
     }
-    return runNow(device, [&](vk::CommandRecorder& r) {
-      m_tailored.warmUp(r, like);
-      m_general.warmUp(r, like);
-    });
+    if (m_tailoredFor == wanted) m_variant = PipelineVariant::tailored;
+    else m_variant = covers(wanted) ? PipelineVariant::superset : PipelineVariant::general;
+    return {};
   }
 
   /// The variant for the scene of the last prepare().

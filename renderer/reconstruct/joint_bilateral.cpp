@@ -22,19 +22,19 @@ Result<void> JointBilateral::prepare(vk::Device& device, const ReconstructBuffer
                                      uint32_t height) {
   m_width = width;
   m_height = height;
-  if (m_interpolate && m_filter) return {};
-  const auto interpolating = interpolateBindings(buffers), filtering = filterBindings(buffers);
-  auto interpolate = gpu::Pass::create(device, "interpolate", interpolating, sizeof(shared::ReconstructPush));
-  if (!interpolate) return interpolate.error();
-  auto filter = gpu::Pass::create(device, "filter_indirect", filtering, sizeof(shared::ReconstructPush));
-  if (!filter) return filter.error();
-  m_interpolate = interpolate.take();
-  m_filter = filter.take();
-  return gpu::runNow(device, [&](vk::CommandRecorder& r) {
-    m_interpolate.warmUp(r, interpolating);
-    r.barrier();  // both name the same buffer
-    m_filter.warmUp(r, filtering);
-  });
+  if (!m_interpolate) {
+    auto pass =
+        gpu::Pass::createWarm(device, "interpolate", interpolateBindings(buffers), sizeof(shared::ReconstructPush));
+    if (!pass) return pass.error();
+    m_interpolate = pass.take();
+  }
+  if (!m_filter) {
+    auto pass =
+        gpu::Pass::createWarm(device, "filter_indirect", filterBindings(buffers), sizeof(shared::ReconstructPush));
+    if (!pass) return pass.error();
+    m_filter = pass.take();
+  }
+  return {};
 }
 
 void JointBilateral::recordInterpolate(vk::CommandRecorder& recorder, const ReconstructBuffers& buffers,

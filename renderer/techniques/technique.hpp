@@ -56,7 +56,8 @@ class Technique {
   virtual const TechniqueInfo& info() const = 0;
 
   /// Pipelines for what the scene needs, compiled and warm. Called before every restart; pipelines are made the first time and
-  /// where `mayCompile` says that a stop is no matter, as when a scene was loaded.
+  /// where `mayCompile` says that a stop is no matter, as when a scene was loaded. Under a vk::PipelineAllowance it may
+  /// fail with kSpent, keeps what it has made, and goes on when it is called again. A later call may bring another context.
   virtual Result<void> prepare(const TechniqueContext& context, const SceneNeeds& needs, bool mayCompile) = 0;
   /// Values within the announced range. The caller restarts what ParameterInfo::cost says.
   virtual void setParameter(const std::string& name, double value) = 0;

@@ -19,11 +19,22 @@ VkDescriptorType descriptorType(BindingKind kind) {
   return VK_DESCRIPTOR_TYPE_MAX_ENUM;
 }
 
+PipelineAllowance::PipelineAllowance(Device& device, uint32_t count) : m_device(device) {
+  LIMN_CHECK(!device.pipelinesAllowed());
+  device.pipelinesAllowed() = count;
+}
+
+PipelineAllowance::~PipelineAllowance() { m_device.pipelinesAllowed().reset(); }
+
 Result<ComputePipeline> ComputePipeline::create(Device& device, const PipelineDesc& desc) {
   constexpr uint32_t kMostPushBytes = 128;  // what every Vulkan device offers
   LIMN_CHECK_LE(desc.pushConstantBytes, kMostPushBytes);
   LIMN_CHECK_EQ(desc.pushConstantBytes % 4, 0u);
   LIMN_CHECK(!desc.spirv.empty());
+  if (std::optional<uint32_t>& left = device.pipelinesAllowed(); left && (*left)-- == 0) {
+    left = 0;
+    return Error{PipelineAllowance::kSpent, desc.name + ": no more pipelines may be made now", ""};
+  }
   ComputePipeline pipeline;
   pipeline.m_device = &device;
   pipeline.m_name = desc.name;

@@ -33,11 +33,27 @@ struct PipelineDesc {
   std::vector<uint32_t> specialization;  ///< the constant with id i takes word i; floats and bools as their bits
 };
 
+/// While it lives, so many pipelines of the device may be made, and no more: the next creation fails with the error
+/// kSpent. So a list of pipelines can be made a few at a time, by whoever keeps those that it has. Not nested. Render
+/// thread.
+class PipelineAllowance {
+ public:
+  static constexpr const char* kSpent = "not-now";
+
+  PipelineAllowance(Device& device, uint32_t count);
+  ~PipelineAllowance();
+  PipelineAllowance(const PipelineAllowance&) = delete;
+  PipelineAllowance& operator=(const PipelineAllowance&) = delete;
+
+ private:
+  Device& m_device;
+};
+
 /// A compute pipeline with its layout. Render thread.
 class ComputePipeline {
  public:
   /// Takes milliseconds; some drivers compile at the first dispatch instead (see CommandRecorder::warmUp). Errors:
-  /// "device", "out-of-memory".
+  /// "device", "out-of-memory", and PipelineAllowance::kSpent under a spent one.
   static Result<ComputePipeline> create(Device& device, const PipelineDesc& desc);
 
   ComputePipeline() = default;

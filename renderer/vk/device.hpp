@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -97,6 +98,7 @@ class Device {
   const DeviceFunctions& functions() const { return m_functions; }
   MemoryUse& memoryUse() { return m_memory; }
   PipelineStats& mutablePipelineStats() { return m_pipelineStats; }
+  std::optional<uint32_t>& pipelinesAllowed() { return m_pipelinesAllowed; }  ///< of PipelineAllowance
   VkPipelineCache pipelineCache() const;
   /// Shown by validation messages and captures; does nothing without VK_EXT_debug_utils.
   void setName(VkObjectType type, uint64_t handle, const std::string& name) const;
@@ -122,6 +124,7 @@ class Device {
   std::unique_ptr<PipelineCache> m_pipelineCache;
   MemoryUse m_memory;
   PipelineStats m_pipelineStats;
+  std::optional<uint32_t> m_pipelinesAllowed;
 };
 
 }  // namespace limn::vk
