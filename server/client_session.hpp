@@ -55,7 +55,8 @@ class ClientSession {
   bool takesJpeg = true, takesPng = true;
   uint32_t lastSeq = 0, helloSeq = 0;
   uint32_t unanswered = 0;
-  bool loading = false, saving = false;
+  uint32_t readingSeq = 0;             ///< of the load or edit whose file the loader reads; 0: none
+  bool saving = false;
   std::vector<ErrorWait> errorWaits;
   uint32_t lastEditSeq = 0;            ///< of an edit that changes something, as far as is known
   uint32_t lastEffectiveSeq = 0;       ///< of an acknowledged edit that did

@@ -85,6 +85,7 @@ struct EditReader {
     SetEnvironment set;
     copy(wire.radiance, set.radiance);
     set.rotation = wire.rotation;
+    if (wire.image && wire.image->empty()) set.image = nullptr;
     return set;
   }
   Edit operator()(const protocol::CameraEdit& wire) const {

@@ -106,7 +106,9 @@ protocol::SceneMessage toWire(const SceneSummary& scene, protocol::SceneCause ca
   for (const Node& node : scene.nodes) wire.nodes.push_back(toWire(node));
   wire.meshes = scene.meshNames;
   for (const Camera& c : scene.cameras) wire.cameras.push_back({c.name, c.perspective, c.yfov, c.ymag, c.znear});
-  wire.environment = {array(scene.environment.radiance), scene.environment.rotation, scene.environment.image != kNone};
+  const Image* sky = scene.environment.image.get();
+  wire.environment = {array(scene.environment.radiance), scene.environment.rotation, sky != nullptr,
+                      sky ? sky->name : ""};
   wire.view = toWire(scene.view);
   wire.resolve = {scene.resolve.exposure, protocol::ToneMap(uint32_t(scene.resolve.toneMap)),
                   protocol::ResolveView(uint32_t(scene.resolve.view))};

@@ -39,7 +39,7 @@ Result<std::unique_ptr<Service>> Service::open(ServiceConfig config, Mailbox& ma
   const auto wake = [loop = service->m_transport.get()] { loop->wake(); };
   service->m_encoder = std::make_unique<EncodeWorker>(wake);
   service->m_loader =
-      std::make_unique<LoaderWorker>(service->m_config.assetRoot, service->m_config.readScene, mailbox, wake);
+      std::make_unique<LoaderWorker>(service->m_config.assetRoot, service->m_config.readers, mailbox, wake);
   frames.onPublish(wake);
   replies.onPush(wake);
   return service;

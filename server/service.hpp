@@ -27,7 +27,7 @@ struct ServiceConfig {
   std::vector<std::string> stages;         ///< of a picture's times, as far as is known before the first
   uint32_t maxImageSide = 4096;            ///< [pixel]
   std::filesystem::path assetRoot;
-  SceneReader readScene;
+  AssetReaders readers;
   std::span<const SiteFile> site;
   double helloSeconds = 5.0;               ///< from the handshake to the client's hello
   double ackSeconds = 10.0;                ///< without an acknowledgement while frames are in flight
@@ -83,6 +83,7 @@ class Service : private TransportHandler {
   void greet(ClientSession& session, const protocol::ClientHello& hello);
   /// `batch`: the edits stand in a list of the message's, not in the message itself.
   void edit(ClientSession& session, uint32_t seq, const std::vector<protocol::Edit>& edits, bool batch = false);
+  bool askLoader(ClientSession& session, LoaderJob job);
   void ask(ClientSession& session, uint32_t seq, Request request);
 
   // service_replies.cpp: what the renderer says

@@ -45,13 +45,8 @@ struct MessageHandler {
   }
   void operator()(const protocol::Ping& ping) const { service.send(session, protocol::Pong{ping.seq, nowSeconds()}); }
   void operator()(const protocol::Load& load) const {
-    if (session.loading)
-      return service.sendError(session, load.seq, error(protocol::kErrorBusy, "a scene is being loaded already"));
-    if (!service.m_loader->request({session.id(), load.seq}, load.uri, nowSeconds()))
-      return service.sendError(session, load.seq, error(protocol::kErrorBusy, "too many scenes wait to be loaded"));
-    session.loading = true;
-    ++session.unanswered;
-    ++service.m_counters.loads;
+    const bool taken = service.askLoader(session, SceneJob{{session.id(), load.seq}, load.uri, nowSeconds()});
+    service.m_counters.loads += taken;
   }
   void operator()(const protocol::SetCamera& camera) const {
     service.edit(session, camera.seq, {protocol::CameraEdit{camera.view}});
@@ -157,6 +152,7 @@ void Service::edit(ClientSession& session, uint32_t seq, const std::vector<proto
   EditRequest request{{session.id(), seq}, {}, nowSeconds()};
   View view = m_view;
   bool moves = false;
+  std::vector<ImageUse> images;
   for (const protocol::Edit& wire : edits) {
     const auto* size = std::get_if<protocol::ImageEdit>(&wire);
     if (size && std::max(size->width, size->height) > m_config.maxImageSide)
@@ -165,10 +161,13 @@ void Service::edit(ClientSession& session, uint32_t seq, const std::vector<proto
                              "pictures have at most " + std::to_string(m_config.maxImageSide) + " pixels a side",
                              "seq " + std::to_string(seq)));
     moves |= std::holds_alternative<protocol::CameraEdit>(wire);
+    const auto* sky = std::get_if<protocol::EnvironmentEdit>(&wire);
+    if (sky && sky->image && !sky->image->empty()) images.push_back({request.edits.size(), *sky->image});
     request.edits.push_back(editFromWire(wire, view));
   }
   const uint32_t before = session.unanswered;
-  ask(session, seq, std::move(request));
+  if (images.empty()) ask(session, seq, std::move(request));
+  else askLoader(session, EditJob{std::move(request), std::move(images)});
   if (session.unanswered == before) return;
   if (moves) {
     m_view = view;
@@ -177,6 +176,21 @@ void Service::edit(ClientSession& session, uint32_t seq, const std::vector<proto
   if (batch) m_batches.emplace(session.id(), seq);
   session.lastEditSeq = seq;
   ++m_counters.edits;
+}
+
+bool Service::askLoader(ClientSession& session, LoaderJob job) {
+  const uint32_t seq = originOf(job).seq;
+  if (session.readingSeq != 0) {
+    sendError(session, seq, error(protocol::kErrorBusy, "a file is being read for this client already"));
+    return false;
+  }
+  if (!m_loader->request(std::move(job))) {
+    sendError(session, seq, error(protocol::kErrorBusy, "too many files wait to be read"));
+    return false;
+  }
+  session.readingSeq = seq;
+  ++session.unanswered;
+  return true;
 }
 
 void Service::ask(ClientSession& session, uint32_t seq, Request request) {

@@ -35,7 +35,8 @@ struct ReplyHandler {
     const bool effective = !ack.superseded && ack.cost != CostClass::none;
     if (effective) service.m_editors.insert(ack.to.client);
     if (!session) return;
-    if (effective) session->lastEffectiveSeq = ack.to.seq;
+    doneReading(ack.to.seq);
+    if (effective) session->lastEffectiveSeq = std::max(session->lastEffectiveSeq, ack.to.seq);
     else forgetEdit(ack.to.seq);
     service.send(*session, toWire(ack));
   }
@@ -45,7 +46,7 @@ struct ReplyHandler {
     if (reply.to.client == kNobody) return service.tellAll(reply.error);
     if (!session) return;
     session->saving = false;
-    session->loading = false;
+    doneReading(reply.to.seq);
     forgetEdit(reply.to.seq);
     Error error = reply.error;
     error.place = placeInMessage(std::move(error.place), reply.to.seq, batch);
@@ -64,7 +65,7 @@ struct ReplyHandler {
   void operator()(const LoadReply& reply) const {
     service.learnView(*reply.scene);
     if (session) {
-      session->loading = false;
+      doneReading(reply.to.seq);
       service.send(*session,
                    protocol::Loaded{reply.to.seq, reply.loadSeconds, reply.scene->sceneRevision, {reply.scene->hash}});
     }
@@ -89,6 +90,9 @@ struct ReplyHandler {
   }
 
  private:
+  void doneReading(uint32_t seq) const {
+    if (session->readingSeq == seq) session->readingSeq = 0;
+  }
   /// No picture will ever show this edit: waits must not wait for it.
   void forgetEdit(uint32_t seq) const {
     if (session->lastEditSeq == seq) session->lastEditSeq = session->lastEffectiveSeq;
@@ -110,10 +114,8 @@ void Service::routeReplies() {
   }
   for (const ErrorReply& failed : m_loader->takeFailed()) {
     ClientSession* session = find(failed.to.client);
-    if (!session) continue;
-    session->loading = false;
-    if (session->unanswered > 0) --session->unanswered;
-    sendError(*session, failed.to.seq, failed.error);
+    if (session && session->unanswered > 0) --session->unanswered;
+    ReplyHandler{*this, session}(failed);
   }
 }
 

@@ -1,4 +1,5 @@
-"""Loads protocol/schema.json and gives its types a shape that the writers of C++, TypeScript and Markdown share."""
+"""Loads protocol/schema.json, with what it includes, and gives its types a shape that all writers share: those of C++,
+TypeScript and Markdown."""
 
 import json
 import re
@@ -81,9 +82,20 @@ def parse_struct(raw, with_seq=False):
     return Struct(raw["name"], raw["doc"], fields, raw.get("op", ""))
 
 
+def read(path):
+    """The object in a file, with the members of the files beside it that its "include" names."""
+    raw = json.loads(path.read_text(encoding="utf-8"))
+    for name in raw.pop("include", []):
+        part = read(path.parent / name)
+        if twice := set(part) & set(raw):
+            raise ValueError(f"{name}: {twice} is in the file that includes it")
+        raw.update(part)
+    return raw
+
+
 def load(path=None):
     path = path or Path(__file__).resolve().parent.parent / "schema.json"
-    raw = json.loads(Path(path).read_text(encoding="utf-8"))
+    raw = read(Path(path))
     schema = Schema(raw)
     schema.enums = {e["name"]: e for e in raw["enums"]}
     for s in raw["structs"]:

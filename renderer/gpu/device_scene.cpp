@@ -83,6 +83,8 @@ Result<SyncReport> DeviceScene::sync(const Scene& scene, const ChangeSet& change
     for (uint32_t i = 0; i < before.size(); ++i)
       if (before[i] != m_blockAlpha[i]) report.alphaBlocks.push_back(i);
   }
+  if (changes.environmentImage)
+    if (auto done = writeEnvironment(scene); !done) return done.error();
   report.lightsChanged = !changes.lights.empty() || !changes.emissive.empty() || !changes.nodes.empty() || changes.environment;
   if (report.lightsChanged)
     if (auto done = writeLights(scene); !done) return done.error();
@@ -150,8 +152,8 @@ Result<void> DeviceScene::writeEnvironment(const Scene& scene) {
   m_info.distributionHeight = table.height;
   m_info.environmentWidth = m_info.environmentHeight = 0;
   std::vector<glm::vec4> texels;
-  if (scene.environment.image != kNone) {
-    const Image& image = scene.images[size_t(scene.environment.image)];
+  if (scene.environment.image) {
+    const Image& image = *scene.environment.image;
     m_info.environmentWidth = image.width;
     m_info.environmentHeight = image.height;
     texels.resize(size_t(image.width) * image.height);
@@ -162,6 +164,13 @@ Result<void> DeviceScene::writeEnvironment(const Scene& scene) {
   if (auto r = replace(m_device, m_environment, ofTexels, texels); !r) return r;
   const auto ofEntries = describe(kEnvironment, "environmentTable", VK_FORMAT_R32G32B32A32_UINT);
   return replace(m_device, m_environmentTable, ofEntries, table.entries);
+}
+
+Result<void> DeviceScene::checkEnvironment(const Image& image) const {
+  vk::BufferDesc desc = describe("environment", VK_FORMAT_R32G32B32A32_SFLOAT);
+  desc.size = size_t(image.width) * image.height * sizeof(glm::vec4);
+  const auto room = vk::Buffer::create(m_device, desc);
+  return room ? Result<void>() : Result<void>(room.error());
 }
 
 Result<void> DeviceScene::writeLights(const Scene& scene) {

@@ -26,6 +26,9 @@ class DeviceScene {
   /// Brings the mirror up to date. Errors: "limit", "out-of-memory", "device-lost"; then the mirror is unusable until a sync
   /// with `everything` succeeds.
   Result<SyncReport> sync(const Scene& scene, const ChangeSet& changes);
+  /// Whether the device has room for an environment image, before a sync that nobody could take back.
+  /// Errors: "limit", "out-of-memory".
+  Result<void> checkEnvironment(const Image& image) const;
 
   /// The scene's bindings of shaders/shared/bindings.h, without hierarchy and camera.
   std::vector<vk::Binding> bindings() const;

@@ -40,8 +40,8 @@ glm::uvec2 environmentCells(const Image& image) {
 
 EnvironmentTable buildEnvironmentTable(const Scene& scene) {
   EnvironmentTable table;
-  if (scene.environment.image == kNone) return table;
-  const Image& image = scene.images[size_t(scene.environment.image)];
+  if (!scene.environment.image) return table;
+  const Image& image = *scene.environment.image;
   const glm::uvec2 cells = environmentCells(image);
   table.width = cells.x;
   table.height = cells.y;

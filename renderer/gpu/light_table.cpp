@@ -29,8 +29,8 @@ glm::vec3 meanLinear(const Image& image) {
 
 glm::vec3 meanRadiance(const Scene& scene) {
   const Environment& e = scene.environment;
-  if (e.image == kNone) return e.radiance;
-  const Image& image = scene.images[size_t(e.image)];
+  if (!e.image) return e.radiance;
+  const Image& image = *e.image;
   glm::dvec3 sum(0.0);
   double weights = 0.0;
   for (uint32_t y = 0; y < image.height; ++y) {

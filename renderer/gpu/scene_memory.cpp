@@ -45,8 +45,8 @@ uint64_t texelCount(const Scene& scene) {
 
 void addEnvironment(vk::MemoryUse& device, const Scene& scene) {
   uint64_t texels = 0, cells = 0;
-  if (scene.environment.image != kNone) {
-    const Image& image = scene.images[size_t(scene.environment.image)];
+  if (scene.environment.image) {
+    const Image& image = *scene.environment.image;
     const glm::uvec2 table = environmentCells(image);
     texels = uint64_t(image.width) * image.height;
     cells = uint64_t(table.x) * table.y;

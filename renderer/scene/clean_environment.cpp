@@ -1,6 +1,7 @@
 #include "renderer/scene/clean_environment.hpp"
 
 #include <cmath>
+#include <memory>
 
 namespace limn {
 
@@ -16,8 +17,11 @@ uint64_t cleanRadiance(Image& image) {
 }
 
 void cleanEnvironment(Scene& scene, std::vector<std::string>& notes) {
-  if (scene.environment.image == kNone) return;
-  noteCleaned(cleanRadiance(scene.images[size_t(scene.environment.image)]), notes);
+  if (!scene.environment.image) return;
+  Image image = *scene.environment.image;
+  const uint64_t broken = cleanRadiance(image);
+  if (broken > 0) scene.environment.image = std::make_shared<const Image>(std::move(image));
+  noteCleaned(broken, notes);
 }
 
 void noteCleaned(uint64_t values, std::vector<std::string>& notes) {

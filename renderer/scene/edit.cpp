@@ -49,7 +49,14 @@ bool same(const Transform& a, const Transform& b) {
   return a.translation == b.translation && a.rotation == b.rotation && a.scale == b.scale && a.matrix == b.matrix;
 }
 
-bool same(const Environment& a, const Environment& b) { return a.radiance == b.radiance && a.rotation == b.rotation; }
+bool same(const std::shared_ptr<const Image>& a, const std::shared_ptr<const Image>& b) {
+  if (!a || !b || a == b) return a == b;
+  return a->name == b->name && a->width == b->width && a->height == b->height && a->rgbaF == b->rgbaF;
+}
+
+bool same(const Environment& a, const Environment& b) {
+  return a.radiance == b.radiance && a.rotation == b.rotation && same(a.image, b.image);
+}
 
 bool same(const Camera& a, const Camera& b) {
   return a.perspective == b.perspective && a.yfov == b.yfov && a.ymag == b.ymag && a.znear == b.znear;
@@ -113,6 +120,7 @@ class Batch {
   void operator()(const SetEnvironment& e) {
     assign(m_scene.environment.radiance, e.radiance);
     assign(m_scene.environment.rotation, e.rotation);
+    assign(m_scene.environment.image, e.image);
   }
   void operator()(const SetView& e) { m_scene.view = e.view; }
   void operator()(const SetResolve& e) {
@@ -136,6 +144,7 @@ class Batch {
     }
     set.nodes = movedNodes();
     set.environment = !same(m_environment, m_scene.environment);
+    set.environmentImage = !same(m_environment.image, m_scene.environment.image);
     set.view = !same(m_view, m_scene.view);
     set.resolve = m_resolveBefore != m_resolve;
     return set;

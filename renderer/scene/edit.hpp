@@ -58,6 +58,7 @@ struct SetNodeTransform {
 struct SetEnvironment {
   std::optional<glm::vec3> radiance;
   std::optional<float> rotation;
+  std::optional<std::shared_ptr<const Image>> image;  ///< null: none any more
 };
 struct SetView { View view; };
 struct SetResolve {
@@ -83,6 +84,7 @@ struct ChangeSet {
   std::vector<uint32_t> lights;
   std::vector<uint32_t> nodes;         ///< nodes whose world matrix changed, descendants included; sorted, unique
   bool environment = false;
+  bool environmentImage = false;       ///< its texels; then environment is set too
   bool view = false;
   bool resolve = false;
   bool empty() const;

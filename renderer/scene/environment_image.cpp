@@ -1,10 +1,11 @@
+#include "renderer/scene/environment_image.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstring>
 
 #include "renderer/scene/asset_files.hpp"
 #include "renderer/scene/clean_environment.hpp"
-#include "renderer/scene/gltf_loader.hpp"
 #include "renderer/scene/oiio_input.hpp"
 
 namespace limn {
@@ -13,7 +14,7 @@ namespace {
 constexpr int kMaxChannels = 64;
 constexpr const char* kExrReader = "openexr";
 
-const char* readerOf(const std::vector<uint8_t>& bytes) {
+const char* readerOf(std::span<const uint8_t> bytes) {
   constexpr uint8_t kExr[4] = {0x76, 0x2f, 0x31, 0x01};
   if (bytes.size() >= 4 && std::memcmp(bytes.data(), kExr, 4) == 0) return kExrReader;
   if (bytes.size() >= 2 && bytes[0] == '#' && bytes[1] == '?') return "hdr";
@@ -21,7 +22,7 @@ const char* readerOf(const std::vector<uint8_t>& bytes) {
 }
 
 /// Deep data and several parts are bits of an EXR's version field; such files never reach the library.
-bool deepOrMultiPart(const std::vector<uint8_t>& bytes) {
+bool deepOrMultiPart(std::span<const uint8_t> bytes) {
   constexpr uint8_t kDeep = 0x08, kMultiPart = 0x10;
   return bytes.size() < 8 || (bytes[5] & (kDeep | kMultiPart)) != 0;
 }
@@ -67,29 +68,38 @@ bool readRows(OIIO::ImageInput& input, Image& image) {
   return true;
 }
 
-Result<Image> load(const std::filesystem::path& file, const LoadLimits& limits, std::vector<std::string>& notes) {
+Result<Image> load(const std::filesystem::path& file, const LoadOptions& options, std::vector<std::string>& notes) {
   std::error_code failure;
   const std::filesystem::path real = std::filesystem::canonical(file, failure);
   if (failure) return Error{"io", "cannot be opened: " + failure.message(), ""};
-  auto root = AssetRoot::open(real.parent_path());
+  auto root = AssetRoot::open(options.assetRoot.empty() ? real.parent_path() : options.assetRoot);
   if (!root) return root.error();
-  auto reader = root->openFile(real.filename().string(), limits.maxFileBytes);
+  const std::string below = real.lexically_relative(root->folder()).generic_string();
+  if (below.empty() || below.starts_with("..")) return Error{"path", "the file is not below the asset root", ""};
+  auto reader = root->openFile(below, options.limits.maxFileBytes);
   if (!reader) return reader.error();
   auto bytes = reader->read(0, reader->size());
   if (!bytes) return bytes.error();
+  Result<Image> image = decodeEnvironmentImage(*bytes, options.limits, notes);
+  if (image) image->name = below;
+  return image;
+}
 
-  const char* const name = readerOf(*bytes);
+}  // namespace
+
+Result<Image> decodeEnvironmentImage(std::span<const uint8_t> bytes, const LoadLimits& limits,
+                                     std::vector<std::string>& notes) {
+  const char* const name = readerOf(bytes);
   if (!name) return Error{"unsupported", "the environment is neither Radiance HDR nor OpenEXR", ""};
-  if (name == kExrReader && deepOrMultiPart(*bytes)) {
+  if (name == kExrReader && deepOrMultiPart(bytes)) {
     return Error{"unsupported", "deep and multi-part images are not supported", ""};
   }
-  OIIO::Filesystem::IOMemReader memory(bytes->data(), bytes->size());
+  OIIO::Filesystem::IOMemReader memory(const_cast<uint8_t*>(bytes.data()), bytes.size());  // it only reads
   auto input = openOiio(name, memory);
   if (!input) return input.error();
   if (auto good = checkHeader(**input, limits); !good) return good.error();
 
   Image image;
-  image.name = file.filename().string();
   image.width = uint32_t((*input)->spec().width);
   image.height = uint32_t((*input)->spec().height);
   if (!readRows(**input, image))
@@ -98,11 +108,9 @@ Result<Image> load(const std::filesystem::path& file, const LoadLimits& limits, 
   return image;
 }
 
-}  // namespace
-
-Result<Image> loadEnvironmentImage(const std::filesystem::path& file, const LoadLimits& limits,
+Result<Image> loadEnvironmentImage(const std::filesystem::path& file, const LoadOptions& options,
                                    std::vector<std::string>& notes) {
-  Result<Image> image = load(file, limits, notes);
+  Result<Image> image = load(file, options, notes);
   if (image) return image;
   Error error = image.error();
   error.place = file.filename().string();

@@ -36,7 +36,14 @@ Chunk chunkAt(const FileReader& file, uint64_t offset, uint64_t end) {
   return chunk;
 }
 
-void readGlb(Container& container, const FileReader& file) {
+/// Looked at before the text is read, for its parsed form takes several times as much.
+void checkJsonBytes(uint64_t bytes, const LoadLimits& limits) {
+  if (bytes <= limits.maxJsonBytes) return;
+  fail("limit",
+       "the JSON has " + std::to_string(bytes) + " bytes, the limit is " + std::to_string(limits.maxJsonBytes), "");
+}
+
+void readGlb(Container& container, const FileReader& file, const LoadLimits& limits) {
   const std::vector<uint8_t> header = unwrap(file.read(0, 12));
   if (word(header, 4) != 2) fail("unsupported", "GLB version " + std::to_string(word(header, 4)) + " is not 2", "");
   const uint64_t end = word(header, 8);
@@ -48,6 +55,7 @@ void readGlb(Container& container, const FileReader& file) {
 
   const Chunk json = chunkAt(file, 12, end);
   if (json.type != kJsonChunk) fail("bad-file", "the first GLB chunk is not JSON", "");
+  checkJsonBytes(json.length, limits);
   const std::vector<uint8_t> text = unwrap(file.read(20, json.length));
   container.json.assign(text.begin(), text.end());
 
@@ -143,9 +151,10 @@ Container openContainer(const std::filesystem::path& file, const LoadOptions& op
 
   const FileReader reader = unwrap(container.root.openFile(below.string(), options.limits.maxFileBytes));
   if (reader.size() >= 12 && word(unwrap(reader.read(0, 4)), 0) == kGlbMagic) {
-    readGlb(container, reader);
+    readGlb(container, reader, options.limits);
     return container;
   }
+  checkJsonBytes(reader.size(), options.limits);
   const std::vector<uint8_t> text = unwrap(reader.read(0, reader.size()));
   const size_t mark =
       text.size() >= 3 && text[0] == 0xef && text[1] == 0xbb && text[2] == 0xbf ? 3 : 0;  // UTF-8 byte order mark
@@ -153,13 +162,18 @@ Container openContainer(const std::filesystem::path& file, const LoadOptions& op
   return container;
 }
 
-std::vector<uint8_t> readUri(const Container& container, const std::string& uri, uint64_t maxBytes,
-                             const std::string& pointer) {
-  if (uri.starts_with("data:")) return dataUri(uri, maxBytes, pointer);
+std::string pathOfUri(const Container& container, const std::string& uri, const std::string& pointer) {
+  if (uri.starts_with("data:")) return "";
   if (hasScheme(uri)) fail("path", "only relative paths and data URIs are opened", pointer);
   const std::string path = percentDecoded(uri, pointer);
   if (path.empty() || path.front() == '/') fail("path", "only relative paths and data URIs are opened", pointer);
-  const FileReader reader = unwrap(container.root.openFile(container.folder + path, maxBytes), pointer);
+  return container.folder + path;
+}
+
+std::vector<uint8_t> readUri(const Container& container, const std::string& uri, uint64_t maxBytes,
+                             const std::string& pointer) {
+  if (uri.starts_with("data:")) return dataUri(uri, maxBytes, pointer);
+  const FileReader reader = unwrap(container.root.openFile(pathOfUri(container, uri, pointer), maxBytes), pointer);
   return unwrap(reader.read(0, reader.size()), pointer);
 }
 

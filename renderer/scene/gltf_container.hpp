@@ -20,6 +20,9 @@ struct Container {
 /// Reads and checks the file's frame. Throws Fault: io, path, limit, bad-file, unsupported (GLB version).
 Container openContainer(const std::filesystem::path& file, const LoadOptions& options);
 
+/// The path below the asset root that a URI names; empty for a data URI. Throws Fault at `pointer`: path, bad-file.
+std::string pathOfUri(const Container& container, const std::string& uri, const std::string& pointer);
+
 /// The bytes of a buffer's or image's URI: a base64 or percent-encoded data URI, or a file below the asset root.
 /// Throws Fault at `pointer`: path, io, limit, bad-file.
 std::vector<uint8_t> readUri(const Container& container, const std::string& uri, uint64_t maxBytes,

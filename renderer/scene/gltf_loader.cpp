@@ -27,7 +27,7 @@ void chooseView(Scene& scene, LoadReport& report) {
 
 void ensureLight(Scene& scene, LoadReport& report) {
   const SceneNeeds needs = sceneNeeds(scene);
-  if (needs.punctualLights || needs.emissiveTriangles) return;
+  if (needs.punctualLights || needs.emissiveTriangles || needs.environment) return;
   scene.environment.radiance = glm::vec3(1.0f);
   report.notes.push_back("no light: a neutral environment of radiance 1 was added");
 }
@@ -41,6 +41,7 @@ void countGeometry(const Scene& scene, LoadReport& report) {
     }
   }
   for (const Image& image : scene.images) report.imageBytes += image.rgba8.size() + image.rgbaF.size() * sizeof(float);
+  if (scene.environment.image) report.imageBytes += scene.environment.image->rgbaF.size() * sizeof(float);
   if (report.triangles == 0) report.notes.push_back("the scene shows no triangle");
   if (report.degenerateTriangles > 0) {
     report.notes.push_back(std::to_string(report.degenerateTriangles) + " triangles without area were left out");
@@ -76,6 +77,7 @@ LoadedScene load(const std::filesystem::path& file, const LoadOptions& options) 
   loaded.scene.name = file.filename().string();
   gltf::reportUnsupported(document);
   gltf::readMaterials(document, loaded.scene);
+  gltf::readEnvironment(document, loaded.scene);
   gltf::readLights(document, loaded.scene);
   gltf::readCameras(document, loaded.scene);
   gltf::readNodes(document, loaded.scene);

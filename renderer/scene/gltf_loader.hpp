@@ -11,6 +11,7 @@ namespace limn {
 /// Limits checked before anything large is allocated.
 struct LoadLimits {
   uint64_t maxFileBytes = 2ull << 30;
+  uint64_t maxJsonBytes = 256ull << 20;  ///< of a .gltf or a GLB's first chunk; parsed it takes several times as much
   uint64_t maxTriangles = 64'000'000;  ///< of all meshes, and over all nodes
   uint64_t maxVertices = 192'000'000;
   uint32_t maxNodes = 1'000'000;
@@ -43,12 +44,8 @@ struct LoadedScene {
 };
 
 /// Reads .gltf or .glb. Any thread. Errors name the file and the JSON pointer ("cube.gltf#/accessors/3/count").
-/// Skins and morph targets are applied at time zero. Nothing outside the asset root is opened.
+/// Skins and morph targets are applied at time zero. Nothing outside the asset root is opened. The root's
+/// extras.limn.environment may be the URI of an environment image (environment_image.hpp).
 Result<LoadedScene> loadGltf(const std::filesystem::path& file, const LoadOptions& options = {});
-
-/// Reads an .hdr or .exr latitude-longitude image for the environment. NaN and infinity become 0 and are counted in
-/// `notes`.
-Result<Image> loadEnvironmentImage(const std::filesystem::path& file, const LoadLimits& limits,
-                                   std::vector<std::string>& notes);
 
 }  // namespace limn

@@ -11,4 +11,8 @@ void readMaterials(Document& document, Scene& scene);
 void readLights(const Document& document, Scene& scene);
 void readCameras(const Document& document, Scene& scene);
 
+/// The image whose URI is the root's extras.limn.environment, as an environment of radiance 1. After readMaterials(),
+/// with whose images it shares a limit.
+void readEnvironment(Document& document, Scene& scene);
+
 }  // namespace limn::gltf

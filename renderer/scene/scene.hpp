@@ -118,7 +118,7 @@ struct Camera {
 
 /// Light from infinitely far away: a constant radiance, or a latitude-longitude image times it.
 struct Environment {
-  int32_t image = kNone;            ///< index into images, float; kNone: constant
+  std::shared_ptr<const Image> image;  ///< float, named by its path below the asset root; null: constant
   glm::vec3 radiance{0.0f};         ///< [W·sr⁻¹·m⁻²]; multiplies the image
   float rotation = 0.0f;            ///< [rad] about +y
 };

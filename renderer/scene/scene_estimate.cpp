@@ -56,6 +56,7 @@ uint64_t hostBytes(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes)
     for (const Primitive& primitive : mesh.primitives) bytes += bytesOf(primitive);
   for (const Image& image : scene.images) bytes += bytesOf(image.rgba8) + bytesOf(image.rgbaF);
+  if (scene.environment.image) bytes += bytesOf(scene.environment.image->rgbaF);
   return bytes;
 }
 

@@ -133,7 +133,8 @@ uint64_t Scene::hash() const {
   for (const Mesh& mesh : meshes) addAll(h, mesh.primitives);
   addAll(h, nodes);
   addAll(h, lights);
-  h.word(uint64_t(int64_t(environment.image)));
+  h.word(environment.image != nullptr);
+  if (environment.image) add(h, *environment.image);
   h.numbers(&environment.radiance.x, 3);
   h.number(environment.rotation);
   return h.finish();

@@ -73,7 +73,7 @@ SceneNeeds sceneNeeds(const Scene& scene) {
     }
   }
   needs.environment = shines(scene.environment.radiance);
-  needs.environmentImage = needs.environment && scene.environment.image != kNone;
+  needs.environmentImage = needs.environment && scene.environment.image;
   return needs;
 }
 

@@ -22,11 +22,14 @@ Result<bool> Session::step() {
   // At least one picture of every state is shown to who watches, or dragging would show nothing.
   if (s.frameOfState || s.idle() || !s.watched)
     if (auto done = s.drainMailbox(); !done) return done.error();
-  if (s.idle() && !s.frameIsDue(nowSeconds())) return s.tailorAtRest();
+  const bool warmUp = s.warmUpIsDue();
+  if (s.idle() && !s.frameIsDue(nowSeconds()) && !warmUp) return s.tailorAtRest();
   if (!s.idle())
     if (auto done = s.work(s.config.quantumSeconds); !done) return done.error();
   if (auto done = s.answerWaits(); !done) return done.error();
   if (auto done = s.publishIfDue(); !done) return done.error();
+  if (warmUp)
+    if (auto done = s.warmUpOnePipeline(); !done) return done.error();
   return true;
 }
 
@@ -82,5 +85,6 @@ Result<std::shared_ptr<const Frame>> Session::resolveFrame() {
 }
 const Scene& Session::scene() const { return m_impl->scene; }
 const Technique& Session::technique() const { return *m_impl->technique; }
+bool Session::warm() const { return m_impl->coldTechniques.empty(); }
 
 }  // namespace limn

@@ -33,7 +33,7 @@ class Session {
                                                  Mailbox& mailbox, FrameSlot& frames, StatusQueue& replies);
   ~Session();
 
-  /// One turn of the loop. Returns false when there was nothing to do: converged or unwatched, and no mail.
+  /// One turn of the loop. Returns false when there was nothing to do: converged or unwatched, all warm, and no mail.
   /// Device errors end the session: Error code "device-lost" or "device".
   Result<bool> step();
 
@@ -55,6 +55,9 @@ class Session {
   Result<std::shared_ptr<const Frame>> resolveFrame();
   const Scene& scene() const;
   const Technique& technique() const;
+  /// Whether every technique has its pipelines for this scene. step() makes them, one a turn, once a picture was
+  /// published; then no edit has any made.
+  bool warm() const;
 
  private:
   struct Impl;

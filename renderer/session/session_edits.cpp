@@ -39,6 +39,7 @@ void unite(ChangeSet& into, const ChangeSet& more) {
   unite(into.lights, more.lights);
   unite(into.nodes, more.nodes);
   into.environment |= more.environment;
+  into.environmentImage |= more.environmentImage;
   into.view |= more.view;
   into.resolve |= more.resolve;
 }
@@ -81,13 +82,17 @@ Result<void> Session::Impl::checkEdit(std::span<const Edit> batch, size_t index)
       if (auto checked = checkParameter(*info, name, value); !checked) return checked;
     return {};
   }
+  if (const auto* set = std::get_if<SetEnvironment>(&edit); set && set->image.value_or(nullptr)) {
+    const auto fits = mirror.checkEnvironment(**set->image);
+    if (!fits) return Error{fits.error().code, fits.error().message, "image"};
+  }
   return validate(scene, batch, index);
 }
 
-Result<CostClass> Session::Impl::applyTechnique(const SetTechnique& edit) {
+CostClass Session::Impl::applyTechnique(const SetTechnique& edit) {
   CostClass cost = CostClass::none;
   if (edit.technique && *edit.technique != technique->info().name) {
-    if (auto chosen = chooseTechnique(*edit.technique); !chosen) return chosen.error();
+    chooseTechnique(*edit.technique);
     cost = CostClass::rebuild;
   }
   for (const auto& [name, value] : edit.parameters) {
@@ -120,15 +125,13 @@ Result<void> Session::Impl::handle(EditRequest& request) {
   const ChangeSet changes = apply(scene, resolve, request.edits);
   CostClass parameterCost = CostClass::none;
   for (const Edit& edit : request.edits)
-    if (const auto* set = std::get_if<SetTechnique>(&edit)) {
-      auto cost = applyTechnique(*set);
-      if (!cost) return cost.error();
-      parameterCost = std::max(parameterCost, *cost);
-    }
+    if (const auto* set = std::get_if<SetTechnique>(&edit))
+      parameterCost = std::max(parameterCost, applyTechnique(*set));
   const RestartPlan plan = planRestart(changes, parameterCost, sizeChanged);
   if (plan.syncScene) ++sceneRevision;
   if (changes.view || sizeChanged) ++viewRevision;
-  appliedSeq[request.from.client] = request.from.seq;
+  uint32_t& applied = appliedSeq[request.from.client];
+  applied = std::max(applied, request.from.seq);  // an edit that waited for a file comes after later ones
   editReceivedAt = request.receivedAt > 0.0 ? request.receivedAt : nowSeconds();
   ++status.editsApplied;
   unite(pending.changes, changes);
@@ -159,6 +162,7 @@ Result<void> Session::Impl::handle(LoadRequest& request) {
     appliedSeq[request.from.client] = request.from.seq;
     editReceivedAt = request.receivedAt > 0.0 ? request.receivedAt : nowSeconds();
     replies.push(LoadReply{request.from, summary(), nowSeconds() - begin});
+    planWarmUp();
   }
   if (auto done = writeCamera(); !done) return done;
   return restartFilm(CostClass::reload);

@@ -8,6 +8,7 @@
 #include "renderer/gpu/pass.hpp"
 #include "renderer/session/restart_plan.hpp"
 #include "renderer/session/session.hpp"
+#include "renderer/session/warm_up_scene.hpp"
 #include "renderer/techniques/technique.hpp"
 #include "renderer/visibility/scene_tracer.hpp"
 
@@ -24,13 +25,15 @@ struct PendingChanges {
 };
 
 /// What Session is made of. One file a concern: session.cpp the loop, session_edits.cpp what an edit does, session_state.cpp the
-/// derived data, session_publish.cpp pictures and status, session_queries.cpp answers.
+/// derived data, session_publish.cpp pictures and status, session_queries.cpp answers,
+/// session_warm_up.cpp pipelines of the techniques that are not in use.
 struct Session::Impl {
   Impl(vk::Device& d, Mailbox& in, FrameSlot& slot, StatusQueue& out) : device(d), mailbox(in), frames(slot), replies(out), mirror(d) {}
 
   // session_state.cpp
   Result<void> init(Scene newScene, LoadReport newReport, const SessionConfig& newConfig);
-  Result<void> chooseTechnique(const std::string& name);
+  Technique& keptTechnique(const std::string& name);
+  void chooseTechnique(const std::string& name);
   Result<void> resize(uint32_t width, uint32_t height);
   Result<void> syncScene(const ChangeSet& changes);
   Result<void> updateTracer(const gpu::SyncReport& report);
@@ -46,7 +49,7 @@ struct Session::Impl {
   Result<void> handle(EditRequest& request);
   Result<void> handle(LoadRequest& request);
   Result<void> checkEdit(std::span<const Edit> batch, size_t index) const;
-  Result<CostClass> applyTechnique(const SetTechnique& edit);
+  CostClass applyTechnique(const SetTechnique& edit);
   Result<void> redoPending();
 
   // session_publish.cpp
@@ -69,6 +72,11 @@ struct Session::Impl {
   Result<void> answerWaits();
   Result<FilmImage> readFilm();
   std::shared_ptr<const SceneSummary> summary() const;
+
+  // session_warm_up.cpp
+  void planWarmUp();
+  bool warmUpIsDue() const;
+  Result<void> warmUpOnePipeline();
 
   // session.cpp
   bool idle() const { return progress.converged || (!watched && waits.empty()); }
@@ -94,8 +102,12 @@ struct Session::Impl {
   std::optional<Film> film;
   std::optional<Resolver> resolver;
   std::optional<FilmStatistics> statistics;
-  std::unique_ptr<Technique> technique;
+  std::map<std::string, std::unique_ptr<Technique>> techniques;  ///< those made so far, by name, with their pipelines
+  Technique* technique = nullptr;       ///< the one in use
   ParameterValues parameters;
+  std::vector<std::string> coldTechniques;  ///< names; not in use, and not prepared for this scene
+  std::unique_ptr<WarmUpScene> warmUpScene;
+  double warmUpSeconds = 0.0;           ///< spent on coldTechniques since planWarmUp()
 
   PendingChanges pending;
   Progress progress;
@@ -106,6 +118,7 @@ struct Session::Impl {
   double sampledAtFrame = 0.0;          ///< of which the last picture knew
   uint32_t publishedPasses = 0;         ///< of the last picture of this state
   bool frameOfState = false;            ///< a picture of the present state was published
+  bool sceneShown = false;              ///< a picture was published since the scene was loaded
   bool showAgain = false;               ///< the display settings changed
   bool newSamples = false;              ///< since the last publication
   uint32_t firstStride = 8;             ///< grid at which the first picture after a restart is shown

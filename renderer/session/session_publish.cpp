@@ -43,7 +43,7 @@ Result<void> Session::Impl::publish() {
   if (!frame) return frame.error();
   publishedAt = nowSeconds();
   publishedPasses = progress.passes;
-  frameOfState = true;
+  frameOfState = sceneShown = true;
   showAgain = newSamples = false;
   ++status.framesPublished;
   frames.publish(frame.take());

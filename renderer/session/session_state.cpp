@@ -30,6 +30,10 @@ Result<vk::Buffer> smallBuffer(vk::Device& device, size_t bytes, vk::MemoryKind 
   return vk::Buffer::create(device, desc);
 }
 
+void setDefaults(Technique& technique) {
+  for (const ParameterInfo& p : technique.info().parameters) technique.setParameter(p.name, p.defaultValue);
+}
+
 }  // namespace
 
 Result<void> Session::Impl::init(Scene newScene, LoadReport newReport, const SessionConfig& newConfig) {
@@ -44,13 +48,14 @@ Result<void> Session::Impl::init(Scene newScene, LoadReport newReport, const Ses
   if (!pickBuffer) return pickBuffer.error();
   pickResult = pickBuffer.take();
 
-  const auto& first = techniqueInfos().front().name;
-  if (auto done = chooseTechnique(config.technique.empty() ? first : config.technique); !done) return done;
+  const std::string name = config.technique.empty() ? techniqueInfos().front().name : config.technique;
+  if (!findTechnique(name)) return Error{"unknown-technique", "no technique is named \"" + name + "\"", "technique"};
+  chooseTechnique(name);
   SetTechnique given;
   given.parameters = config.parameters;
   const Edit edit(given);
   if (auto checked = checkEdit(std::span(&edit, 1), 0); !checked) return checked;
-  if (auto applied = applyTechnique(given); !applied) return applied.error();
+  applyTechnique(given);
   if (auto done = resize(config.width, config.height); !done) return done;
   const double begin = nowSeconds();
   if (auto done = syncScene(wholeScene()); !done) return done;
@@ -63,19 +68,26 @@ Result<void> Session::Impl::init(Scene newScene, LoadReport newReport, const Ses
           std::to_string(int((ready - built) * 1e3)) + " ms (" + (device.pipelineCacheLoaded() ? "from the cache" : "cold") + "), " +
           std::to_string(device.pipelineStats().created) + " pipelines");
   sceneRevision = viewRevision = 1;
+  planWarmUp();
   return {};
 }
 
-Result<void> Session::Impl::chooseTechnique(const std::string& name) {
-  auto made = makeTechnique(name);
-  if (!made) return Error{"unknown-technique", "no technique is named \"" + name + "\"", "technique"};
-  technique = std::move(made);
+Technique& Session::Impl::keptTechnique(const std::string& name) {
+  std::unique_ptr<Technique>& kept = techniques[name];
+  if (kept) return *kept;
+  kept = makeTechnique(name);
+  LIMN_CHECK(kept != nullptr);
+  setDefaults(*kept);
+  return *kept;
+}
+
+// A technique is kept with its pipelines, so that nothing is compiled when it is chosen again.
+void Session::Impl::chooseTechnique(const std::string& name) {
+  technique = &keptTechnique(name);
+  std::erase(coldTechniques, name);
+  setDefaults(*technique);
   parameters.clear();
-  for (const ParameterInfo& p : technique->info().parameters) {
-    parameters[p.name] = p.defaultValue;
-    technique->setParameter(p.name, p.defaultValue);
-  }
-  return {};
+  for (const ParameterInfo& p : technique->info().parameters) parameters[p.name] = p.defaultValue;
 }
 
 Result<void> Session::Impl::resize(uint32_t width, uint32_t height) {

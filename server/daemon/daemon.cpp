@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "renderer/base/log.hpp"
+#include "renderer/scene/environment_image.hpp"
 #include "renderer/techniques/technique_info.hpp"
 #include "server/daemon/daemon_options.hpp"
 #include "server/daemon/render_thread.hpp"
@@ -31,8 +32,14 @@ ServiceConfig serviceConfig(const DaemonOptions& options) {
   config.layers = {"beauty", "direct", "indirect", "albedo", "normal", "depth", "samples", "error"};
   config.stages = {"sample", "resolve"};
   config.assetRoot = options.assetRoot;
-  config.readScene = [root = options.assetRoot](const std::filesystem::path& file) {
+  config.readers.scene = [root = options.assetRoot](const std::filesystem::path& file) {
     return loadGltf(file, {root, {}});
+  };
+  config.readers.image = [root = options.assetRoot](const std::filesystem::path& file) {
+    std::vector<std::string> notes;
+    Result<Image> image = loadEnvironmentImage(file, {root, {}}, notes);
+    for (const std::string& note : notes) logWarning(file.filename().string() + ": " + note);
+    return image;
   };
   config.site = builtInSite();
   config.idleExitSeconds = options.idleExitSeconds;

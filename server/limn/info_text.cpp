@@ -98,8 +98,9 @@ std::string geometryText(const Scene& scene, const LoadReport& report) {
 
 std::string environmentText(const Scene& scene) {
   const Environment& environment = scene.environment;
-  if (environment.image == kNone && environment.radiance == glm::vec3(0.0f)) return "environment: none\n";
-  return std::string("environment: ") + (environment.image == kNone ? "constant " : "image times ") +
+  if (!environment.image && environment.radiance == glm::vec3(0.0f)) return "environment: none\n";
+  const std::string image = environment.image ? "image \"" + environment.image->name + "\" times " : "constant ";
+  return "environment: " + image +
          vectorText(environment.radiance) + " W/(sr m2)\n";
 }
 

@@ -14,8 +14,7 @@ void surroundByImage(SceneBuilder& b, uint32_t width, uint32_t height,
   for (uint32_t y = 0; y < height; ++y)
     for (uint32_t x = 0; x < width; ++x)
       for (int k = 0; k < 4; ++k) image.rgbaF.push_back(radiance(x, y));
-  b.scene.images.push_back(image);
-  b.scene.environment.image = int32_t(b.scene.images.size() - 1);
+  b.scene.environment.image = std::make_shared<const Image>(std::move(image));
   b.scene.environment.radiance = glm::vec3(1.0f);
 }
 
@@ -112,7 +111,7 @@ TEST(Furnace, SunAndSkyLightADiffuseFloor) {
     });
     b.scene.environment.rotation = 0.5f;
     b.look({0, 3, 3}, {0, 0, 0}, 0.7f);
-    const Image& image = b.scene.images[0];
+    const Image& image = *b.scene.environment.image;
     // Over v in [0, 1/2]: the upper hemisphere. theta = pi v.
     const double irradiance = quadrature(2048, [&](double u, double w) {
       const double theta = 0.5 * kPi * w;

@@ -37,8 +37,7 @@ SceneBuilder sky(uint32_t width, uint32_t height, bool hotTexel) {
           hot ? 2e3f * float(width * height) / 512.0f : 0.1f + float(x) / float(width) + float(y) / float(height);
       for (int k = 0; k < 4; ++k) image.rgbaF.push_back(value);
     }
-  b.scene.images.push_back(image);
-  b.scene.environment.image = 0;
+  b.scene.environment.image = std::make_shared<const Image>(std::move(image));
   b.scene.environment.radiance = glm::vec3(1.0f);
   b.scene.environment.rotation = 0.8f;
   b.quad(b.diffuse(glm::vec3(0.5f)), {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1});

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes Limn's test and demo scenes as GLB files. The same names give the same bytes."""
+"""Writes Limn's test and demo scenes as GLB files, what they name beside them. The same names give the same bytes."""
 
 import argparse
 import pathlib
@@ -27,6 +27,7 @@ REGISTRIES = (
     scenes_large,
 )
 SCENES = {name: make for module in REGISTRIES for name, make in module.SCENES.items()}
+FILES = {name: files for module in REGISTRIES for name, files in getattr(module, "FILES", {}).items()}
 ON_REQUEST = frozenset(scenes_large.SCENES)
 
 
@@ -54,6 +55,8 @@ def main(arguments):
     options.output.mkdir(parents=True, exist_ok=True)
     for name in options.names or default_names():
         (options.output / f"{name}.glb").write_bytes(SCENES[name]())
+        for file, make in FILES.get(name, {}).items():
+            (options.output / file).write_bytes(make())
     return 0
 
 

@@ -3,6 +3,7 @@ pi)."""
 
 import math
 
+import hdr
 import materials
 import shapes
 from gltf_writer import Builder
@@ -11,6 +12,7 @@ from mesh import faceted
 GREY = (0.5, 0.5, 0.5)
 EYE, TARGET = (0.0, 1.6, 2.6), (0.0, 0.0, 0.0)
 SPOT_INNER, SPOT_OUTER = 0.35, 0.60  # half angles [rad]
+SUN_TEXEL, SUN_RADIANCE = (20, 5), 5000.0
 SUN_DIRECTION = (0.5, -math.sqrt(0.5), -0.5)  # unit length, 45 degrees above the horizon
 
 
@@ -91,12 +93,35 @@ def analytic_refraction():
     return scene.glb()
 
 
+def analytic_sky():
+    """The plane under analytic-sky.hdr and nothing else: L is 1/(2 pi) of the integral of the sky's radiance times the
+    cosine over the upper hemisphere. The sun is one texel, ten thousand times as bright as the sky at the horizon."""
+    scene = _over_a_plane("analytic-sky", 20.0)
+    scene.document["extras"] = {"limn": {"environment": "analytic-sky.hdr"}}
+    return scene.glb()
+
+
+def analytic_sky_image():
+    """64x32 texels; bluer towards the top, black below the horizon."""
+
+    def colour(x, y):
+        if (x, y) == SUN_TEXEL:
+            return (SUN_RADIANCE,) * 3
+        height = max(0.0, 1.0 - y / 16.0)
+        return (0.5, 0.5, 0.5 + 0.5 * height) if y < 16 else (0.0, 0.0, 0.0)
+
+    return hdr.encode(64, 32, colour)
+
+
 SCENES = {
     "analytic-point": analytic_point,
     "analytic-spot": analytic_spot,
     "analytic-sun": analytic_sun,
     "analytic-quad": analytic_quad,
     "analytic-sphere": analytic_sphere,
+    "analytic-sky": analytic_sky,
     "analytic-refraction": analytic_refraction,
     "black-box": black_box,
 }
+# Files that a scene names, beside its GLB.
+FILES = {"analytic-sky": {"analytic-sky.hdr": analytic_sky_image}}

@@ -92,6 +92,8 @@ void FakeRenderer::handle(const Request& request) {
         ++m_scene.viewRevision;
         ack.cost = CostClass::regather;
       }
+      const auto* sky = std::get_if<SetEnvironment>(&one);
+      if (sky && sky->image) m_scene.environment.image = *sky->image;
       if (material && material->roughness) m_scene.materials[material->material].roughness = *material->roughness;
     }
     ack.sceneRevision = ++m_scene.sceneRevision;

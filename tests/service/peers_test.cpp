@@ -139,7 +139,7 @@ TEST(Loading, aSceneUnderTheRootIsLoadedAndToldToAll) {
   TestService::Options options;
   options.configure = [&](ServiceConfig& config) {
     config.assetRoot = root;
-    config.readScene = [](const fs::path& file) -> Result<LoadedScene> {
+    config.readers.scene = [](const fs::path& file) -> Result<LoadedScene> {
       if (file.filename() == "bad.glb") return Error{"bad-file", "not glTF", "bad.glb#/asset"};
       LoadedScene loaded;
       loaded.scene.name = file.filename().string();
@@ -157,7 +157,7 @@ TEST(Loading, aSceneUnderTheRootIsLoadedAndToldToAll) {
   EXPECT_EQ(error.place, "bad.glb#/asset");
   EXPECT_EQ(error.seq, 10u);
   asks.send(protocol::Load{11, "out/passwd"});
-  EXPECT_EQ(asks.await<protocol::ErrorMessage>().code, "io");
+  EXPECT_EQ(asks.await<protocol::ErrorMessage>().code, "path");
 
   asks.send(protocol::Load{12, "sub/room.glb"});
   const auto loaded = asks.awaitReply<protocol::Loaded>(12);
@@ -171,6 +171,98 @@ TEST(Loading, aSceneUnderTheRootIsLoadedAndToldToAll) {
   fs::remove_all(root);
 }
 
+/// A service whose asset root has a "sky.hdr", which reads well, and a "bad.hdr", which does not.
+struct SkyService {
+  explicit SkyService(std::function<void()> beforeReading = [] {}) {
+    fs::create_directories(root / "folder");
+    for (const char* name : {"sky.hdr", "bad.hdr"}) std::ofstream(root / name) << "#?";
+    TestService::Options options;
+    options.configure = [this, beforeReading](ServiceConfig& config) {
+      config.assetRoot = root;
+      config.readers.image = [beforeReading](const fs::path& file) -> Result<Image> {
+        beforeReading();
+        if (file.filename() == "bad.hdr") return Error{"bad-file", "no texels", "bad.hdr"};
+        Image image;
+        image.name = file.filename().string();
+        image.width = image.height = 1;
+        image.rgbaF = {1.0f, 1.0f, 1.0f, 1.0f};
+        return image;
+      };
+    };
+    server = std::make_unique<TestService>(options);
+  }
+  ~SkyService() {
+    server.reset();
+    fs::remove_all(root);
+  }
+
+  const fs::path root = fs::temp_directory_path() / ("limn-sky-" + std::to_string(getpid()));
+  std::unique_ptr<TestService> server;
+};
+
+protocol::SetMessage setSky(uint32_t seq, const std::string& uri) {
+  protocol::EnvironmentEdit edit;
+  edit.image = uri;
+  return {seq, edit};
+}
+
+TEST(Loading, anEnvironmentImageIsReadAndThenSet) {
+  const SkyService sky;
+  TestClient client(sky.server->port());
+  client.greet(false);
+  const auto image = [&](uint32_t seq) {
+    client.send(protocol::Describe{seq});
+    return client.awaitReply<protocol::SceneMessage>(seq).environment;
+  };
+  client.send(setSky(10, "sky.hdr"));
+  EXPECT_EQ(client.awaitReply<protocol::Ack>(10).cost, protocol::CostClass::relight);
+  EXPECT_EQ(image(11).image, "sky.hdr");
+  EXPECT_TRUE(image(12).hasImage);
+  client.send(setSky(15, ""));
+  EXPECT_EQ(client.awaitReply<protocol::Ack>(15).cost, protocol::CostClass::relight);
+  EXPECT_FALSE(image(16).hasImage);
+  EXPECT_EQ(image(17).image, "");
+}
+
+TEST(Loading, anEnvironmentImageThatCannotBeReadChangesNothing) {
+  const SkyService sky;
+  TestClient client(sky.server->port());
+  client.greet(false);
+  const auto before = client.await<protocol::SceneMessage>();
+  const std::pair<const char*, const char*> cases[] = {
+      {"none.hdr", "io"}, {"../sky.hdr", "path"}, {"/etc/passwd", "path"}, {"folder", "path"}, {"bad.hdr", "bad-file"}};
+  uint32_t seq = 10;
+  for (const auto& [uri, code] : cases) {
+    client.send(protocol::Batch{++seq, {protocol::LightEdit{0, std::nullopt, 77.0f}, setSky(0, uri).edit}});
+    const auto error = client.await<protocol::ErrorMessage>();
+    EXPECT_EQ(error.seq, seq) << uri;
+    EXPECT_EQ(error.code, code) << uri;
+    EXPECT_EQ(error.place, "/edits/1/image") << uri;
+    EXPECT_NE(error.message.find(uri), std::string::npos) << error.message;
+  }
+  client.send(protocol::Describe{++seq});
+  EXPECT_EQ(client.awaitReply<protocol::SceneMessage>(seq).hash.value, before.hash.value);
+}
+
+TEST(Loading, nothingWaitsForAnEnvironmentImageButItsEdit) {
+  std::atomic<bool> go{false};
+  const SkyService sky([&] { go.wait(false); });
+  TestClient client(sky.server->port());
+  client.greet(false);
+  client.send(setSky(10, "sky.hdr"));
+  client.send(setSky(11, "sky.hdr"));
+  const auto busy = client.await<protocol::ErrorMessage>();
+  EXPECT_EQ(busy.code, "busy");
+  EXPECT_EQ(busy.seq, 11u);
+  client.send(setRoughness(12, 0, 0.25f));
+  client.awaitReply<protocol::Ack>(12);
+  go = true;
+  go.notify_all();
+  client.awaitReply<protocol::Ack>(10);
+  client.send(setSky(13, "sky.hdr"));
+  client.awaitReply<protocol::Ack>(13);
+}
+
 TEST(Loading, oneAtATimePerClient) {
   std::atomic<bool> go{false};
   const fs::path root = fs::temp_directory_path() / ("limn-busy-" + std::to_string(getpid()));
@@ -179,7 +271,7 @@ TEST(Loading, oneAtATimePerClient) {
   TestService::Options options;
   options.configure = [&](ServiceConfig& config) {
     config.assetRoot = root;
-    config.readScene = [&](const fs::path&) -> Result<LoadedScene> {
+    config.readers.scene = [&](const fs::path&) -> Result<LoadedScene> {
       go.wait(false);
       return LoadedScene{};
     };

@@ -24,7 +24,7 @@ TestService::TestService(const Options& options) {
   config.layers = {"beauty", "albedo"};
   config.stages = {"trace", "resolve"};
   config.assetRoot = std::filesystem::temp_directory_path();
-  config.readScene = [](const std::filesystem::path& file) -> Result<LoadedScene> {
+  config.readers.scene = [](const std::filesystem::path& file) -> Result<LoadedScene> {
     LoadedScene loaded;
     loaded.scene.name = file.filename().string();
     return loaded;

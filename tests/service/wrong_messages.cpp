@@ -61,10 +61,10 @@ const std::vector<WrongMessage>& wrongMessages() {
       {"controlCharacter", "{\"op\":\"load\",\"seq\":32,\"uri\":\"a\nb\"}", "bad-message", "byte 30"},
       {"longString", R"({"op":"load","seq":34,"uri":")" + std::string(5000, 'a') + "\"}",
        "out-of-range", "seq 34 /uri"},
-      {"absolutePath", R"({"op":"load","seq":35,"uri":"/etc/passwd"})", "io", "/etc/passwd"},
-      {"pathOutOfTheRoot", R"({"op":"load","seq":36,"uri":"../../etc/passwd"})", "io", "../../etc/passwd"},
+      {"absolutePath", R"({"op":"load","seq":35,"uri":"/etc/passwd"})", "path", "/etc/passwd"},
+      {"pathOutOfTheRoot", R"({"op":"load","seq":36,"uri":"../../etc/passwd"})", "path", "../../etc/passwd"},
       {"noSuchFile", R"({"op":"load","seq":37,"uri":"no-such-scene.glb"})", "io", "no-such-scene.glb"},
-      {"directoryAsFile", R"({"op":"load","seq":38,"uri":"."})", "io", "."},
+      {"directoryAsFile", R"({"op":"load","seq":38,"uri":"."})", "path", "."},
       {"unknownView", R"({"op":"set","seq":39,"target":"resolve","view":"camera"})", "out-of-range", "seq 39 /view"},
   };
   return cases;

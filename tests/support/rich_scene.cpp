@@ -26,18 +26,6 @@ Image bumps() {
   return image;
 }
 
-Image sky() {
-  Image image;
-  image.name = "sky";
-  image.width = 8;
-  image.height = 4;
-  for (uint32_t i = 0; i < 32; ++i) {
-    const float value = i == 11 ? 6.0f : 0.2f + 0.05f * float(i % 5);
-    for (const float v : {value, value * 0.9f, value * 1.1f, 1.0f}) image.rgbaF.push_back(v);
-  }
-  return image;
-}
-
 /// The unit square in z = 0 about the origin, with every attribute.
 Primitive card(uint32_t material, bool colors) {
   Primitive p;
@@ -59,11 +47,23 @@ void adopt(Scene& scene, uint32_t parent, uint32_t child) {
 
 }  // namespace
 
+std::shared_ptr<const Image> skyImage(uint32_t sun) {
+  Image image;
+  image.name = "sky-" + std::to_string(sun) + ".hdr";
+  image.width = 8;
+  image.height = 4;
+  for (uint32_t i = 0; i < 32; ++i) {
+    const float value = i == sun ? 6.0f : 0.2f + 0.05f * float(i % 5);
+    for (const float v : {value, value * 0.9f, value * 1.1f, 1.0f}) image.rgbaF.push_back(v);
+  }
+  return std::make_shared<const Image>(std::move(image));
+}
+
 RichScene richScene() {
   SceneBuilder b;
   RichScene r;
-  b.scene.images = {checker(), bumps(), sky()};
-  b.scene.environment.image = 2;
+  b.scene.images = {checker(), bumps()};
+  b.scene.environment.image = skyImage(11);
   b.scene.environment.radiance = glm::vec3(0.4f);
 
   r.floor = b.diffuse({0.7f, 0.7f, 0.7f});

@@ -15,6 +15,9 @@ struct RichScene {
 /// area light, a point light, a spot, a sun, an environment image, and a node hierarchy.
 RichScene richScene();
 
+/// A small sky, brightest in texel `sun`, below 32; its name holds the number.
+std::shared_ptr<const Image> skyImage(uint32_t sun);
+
 /// Three diffuse walls under a point light: the least a scene can need.
 Scene plainScene();
 

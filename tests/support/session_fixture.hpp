@@ -95,6 +95,11 @@ class TestSession {
     while (count < limit && step()) ++count;
     return count;
   }
+  /// Turns until every technique has its pipelines; false when that does not come.
+  bool untilWarm(int limit = 100000) {
+    for (int i = 0; i < limit && !m_session->warm(); ++i) (void)step();
+    return m_session->warm();
+  }
   /// Turns until a picture is published.
   std::shared_ptr<const Frame> nextFrame(int limit = 100000) {
     const size_t before = published.size();

@@ -96,8 +96,7 @@ Image skyOf(uint32_t width, uint32_t height, float radiance) {
 }
 Scene floorUnder(Image image) {
   SceneBuilder b = floorAtOrigin();
-  b.scene.images = {std::move(image)};
-  b.scene.environment.image = 0;
+  b.scene.environment.image = std::make_shared<const Image>(std::move(image));
   b.scene.environment.radiance = glm::vec3(1.0f);
   return b.scene;
 }

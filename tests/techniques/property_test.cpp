@@ -5,6 +5,7 @@
 #include <random>
 
 #include "renderer/gpu/needs_constants.hpp"
+#include "renderer/techniques/technique.hpp"
 #include "tests/support/rich_scene.hpp"
 #include "tests/support/session_fixture.hpp"
 
@@ -71,6 +72,12 @@ Edit viewEdit(Dice& dice, const Scene& scene) {
   return e;
 }
 
+Edit environmentEdit(Dice& dice) {
+  SetEnvironment e{dice.maybe(dice.chance(3) ? glm::vec3(0.0f) : dice.color()), dice.maybe(dice.real(-4, 4))};
+  if (dice.chance(2)) e.image = dice.chance(3) ? nullptr : skyImage(dice.below(32));
+  return e;
+}
+
 Edit pointProjectionEdit(Dice& dice) {
   SetTechnique e;
   if (dice.chance(2)) e.parameters.push_back({"bounces", dice.below(4)});
@@ -92,28 +99,41 @@ Edit pathTracingEdit(Dice& dice) {
   return e;
 }
 
-Edit anyEdit(Dice& dice, const Scene& scene, bool pathTracing) {
+/// Parameters with which little work is a pass.
+std::vector<std::pair<std::string, double>> smallParameters(const std::string& technique) {
+  if (technique != "point-projection") return {};
+  return {{"points", 16384}, {"clusters", 64}, {"projections", 512}, {"bounces", 2}};
+}
+
+/// Of the session's own technique.
+Edit anyEdit(Dice& dice, const TestSession& session) {
+  const Scene& scene = session.scene();
   switch (dice.below(12)) {
     case 0: case 1: case 2: return materialEdit(dice, scene);
     case 3: case 4: return lightEdit(dice, scene);
     case 5: case 6: return nodeEdit(dice, scene);
-    case 7: return SetEnvironment{dice.maybe(dice.chance(3) ? glm::vec3(0.0f) : dice.color()), dice.maybe(dice.real(-4, 4))};
+    case 7: return environmentEdit(dice);
     case 8: return viewEdit(dice, scene);
     case 9: return SetResolve{dice.real(-3, 3), ToneMap(dice.below(4)), ResolveView(dice.below(8))};
     case 10: return SetImageSize{16 + 4 * dice.below(9), 16 + 4 * dice.below(9)};
-    default: return pathTracing ? pathTracingEdit(dice) : pointProjectionEdit(dice);
+    default:
+      return session->technique().info().name == "path-tracing" ? pathTracingEdit(dice) : pointProjectionEdit(dice);
   }
 }
 
-/// Brings picture size and parameters to those of `model`, then loads `scene` anew.
+void load(TestSession& session, const Scene& scene) {
+  LoadRequest request;
+  request.loaded = std::make_shared<LoadedScene>(LoadedScene{scene, {}});
+  (void)session.ask(std::move(request));
+  session.run(0);
+}
+
+/// Brings picture size, technique and parameters to those of `model`, then loads `scene` anew.
 void loadInto(TestSession& session, const Scene& scene, const SceneSummary& model) {
   std::vector<Edit> settings{Edit(SetImageSize{model.width, model.height})};
-  settings.emplace_back(std::in_place_type<SetTechnique>, std::nullopt, model.parameters);
+  settings.emplace_back(std::in_place_type<SetTechnique>, model.technique, model.parameters);
   (void)session.edit(std::move(settings));
-  LoadRequest load;
-  load.loaded = std::make_shared<LoadedScene>(LoadedScene{scene, {}});
-  (void)session.ask(std::move(load));
-  session.run(0);
+  load(session, scene);
 }
 
 std::shared_ptr<const SceneSummary> describe(TestSession& session) {
@@ -126,52 +146,67 @@ std::shared_ptr<const SceneSummary> describe(TestSession& session) {
 SessionConfig smallQuanta(const std::string& technique) {
   SessionConfig config = smallPicture(32, 24);
   config.technique = technique;
-  if (technique == "point-projection") config.parameters = {{"points", 16384}, {"clusters", 64}, {"projections", 512}, {"bounces", 2}};
+  config.parameters = smallParameters(technique);
   config.quantumSeconds = 0.0005;  // several to a pass
   config.firstFrameSeconds = 0.001;
   return config;
 }
 
-/// One loaded session for each pipeline variant, so that every reference is rendered by the variant cut to its scene.
+/// One loaded session for each technique and pipeline variant, so that every reference is rendered by the variant cut to
+/// its scene, in a session that has never changed its technique.
 class References {
  public:
-  explicit References(std::string technique) : m_technique(std::move(technique)) {}
   uint64_t hash(const Scene& scene, const SceneSummary& model, uint32_t passes) {
-    auto& session = m_sessions[gpu::needsConstants(sceneNeeds(scene))];
-    if (!session) session = std::make_unique<TestSession>(scene, smallQuanta(m_technique));
+    auto& session = m_sessions[{model.technique, gpu::needsConstants(sceneNeeds(scene))}];
+    if (!session) session = std::make_unique<TestSession>(scene, smallQuanta(model.technique));
     loadInto(*session, scene, model);
     session->run(passes);
     return session->hash();
   }
 
  private:
-  std::string m_technique;
-  std::map<std::vector<uint32_t>, std::unique_ptr<TestSession>> m_sessions;
+  std::map<std::pair<std::string, std::vector<uint32_t>>, std::unique_ptr<TestSession>> m_sessions;
 };
 
-/// Random batches with partial steps between them.
-void playSequence(TestSession& session, Dice& dice, bool pathTracing) {
+/// The two scenes that sequences begin with, and load on their way.
+const std::vector<Scene>& startScenes() {
+  static const std::vector<Scene> kStarts{richScene().scene, plainScene()};
+  return kStarts;
+}
+
+/// A technique at random, or a scene.
+void changeGround(TestSession& session, Dice& dice) {
+  if (dice.chance(3)) return load(session, startScenes()[dice.below(2)]);
+  const std::string name = techniqueInfos()[dice.below(uint32_t(techniqueInfos().size()))].name;
+  (void)session.edit({Edit(SetTechnique{name, smallParameters(name)})});
+  session.run(0);
+}
+
+/// Random batches with partial steps between them; `everything`: also techniques and scenes change.
+void playSequence(TestSession& session, Dice& dice, bool everything) {
   const uint32_t batches = 1 + dice.below(6);
   for (uint32_t i = 0; i < batches; ++i) {
+    if (everything && dice.chance(2)) changeGround(session, dice);
     std::vector<Edit> edits;
     const uint32_t count = 1 + dice.below(3);
-    while (edits.size() < count) edits.push_back(anyEdit(dice, session.scene(), pathTracing));
+    while (edits.size() < count) edits.push_back(anyEdit(dice, session));
     (void)session.edit(std::move(edits));
     session.steps(int(dice.below(5)));
   }
 }
 
-void expectPicturesOfFreshLoads(const std::string& technique, uint32_t sequences, uint32_t mostPasses) {
-  const Scene starts[] = {richScene().scene, plainScene()};
+void expectPicturesOfFreshLoads(const std::string& technique, uint32_t sequences, uint32_t mostPasses,
+                                bool everything = false) {
+  const std::vector<Scene>& starts = startScenes();
   TestSession edited[] = {{starts[0], smallQuanta(technique)}, {starts[1], smallQuanta(technique)}};
   const auto defaults = describe(edited[0]);
-  References references(technique);
+  References references;
   for (uint32_t seed = 0; seed < sequences; ++seed) {
     Dice dice(seed);
     TestSession& session = edited[seed % 2];
     loadInto(session, starts[seed % 2], *defaults);
     session.steps(int(dice.below(4)));
-    playSequence(session, dice, technique == "path-tracing");
+    playSequence(session, dice, everything);
     const uint32_t passes = 1 + dice.below(mostPasses);
     session.run(0);
     session.published.clear();
@@ -181,7 +216,7 @@ void expectPicturesOfFreshLoads(const std::string& technique, uint32_t sequences
     const auto summary = describe(session);
     EXPECT_EQ(hash, references.hash(session.scene(), *summary, passes)) << "seed " << seed << ", " << passes << " passes";
     if (seed % 20 < 2) {
-      SessionConfig config = smallQuanta(technique);
+      SessionConfig config = smallQuanta(summary->technique);
       config.width = summary->width;
       config.height = summary->height;
       config.parameters = summary->parameters;
@@ -192,6 +227,9 @@ void expectPicturesOfFreshLoads(const std::string& technique, uint32_t sequences
 
 TEST(AnyEdits, GiveThePictureOfAFreshLoad) { expectPicturesOfFreshLoads("path-tracing", 200, 6); }
 TEST(AnyEdits, GivePointProjectionsPictureOfAFreshLoad) { expectPicturesOfFreshLoads("point-projection", 24, 7); }
+TEST(AnyEdits, AmongOtherTechniquesAndScenesGiveThePictureOfAFreshLoad) {
+  expectPicturesOfFreshLoads("path-tracing", 20, 5, true);
+}
 
 }  // namespace
 }  // namespace limn::test

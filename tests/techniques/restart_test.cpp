@@ -83,6 +83,8 @@ std::vector<Row> rows() {
       {"LightIntensity", with<SetLight>([&](auto& e) { e.light = r.spot; e.intensity = 5.0f; }), CostClass::relight, 0},
       {"Environment", with<SetEnvironment>([](auto& e) { e.radiance = glm::vec3(0.1f); }), CostClass::relight, 0},
       {"EnvironmentRotation", with<SetEnvironment>([](auto& e) { e.rotation = 1.0f; }), CostClass::relight, 0},
+      {"EnvironmentImage", with<SetEnvironment>([](auto& e) { e.image = skyImage(3); }), CostClass::relight, 0},
+      {"NoEnvironmentImage", with<SetEnvironment>([](auto& e) { e.image = nullptr; }), CostClass::relight, 0},
       {"BaseColor", with<SetMaterial>([&](auto& e) { e.material = r.floor; e.baseColor = glm::vec4(0.2f); }), CostClass::regather, 0},
       {"Roughness", with<SetMaterial>([&](auto& e) { e.material = r.metal; e.roughness = 0.7f; }), CostClass::regather, 0},
       {"Emission", with<SetMaterial>([&](auto& e) { e.material = r.lamp; e.emission = glm::vec3(1.0f); }), CostClass::regather, 0},
@@ -231,7 +233,20 @@ TEST_F(Restart, AnEditOfABatchIsJudgedByWhatTheOnesBeforeItLeave) {
 }
 
 TEST_F(Restart, NoEditMakesAPipeline) {
+  ASSERT_TRUE(session().untilWarm());
   const vk::PipelineStats before = device().pipelineStats();
+  const std::string own = session().status().technique;
+  const auto choose = [](const std::string& name) {
+    SetTechnique e{name, {}};
+    for (const ParameterInfo& p : findTechnique(name)->parameters)
+      if (p.name == "points") e.parameters.push_back({p.name, p.minimum});
+    return Edit(e);
+  };
+  for (const TechniqueInfo& info : techniqueInfos())
+    for (const std::string& name : {info.name, own}) {
+      session().edit({choose(name)}), session().run(1);
+      EXPECT_EQ(session().status().technique, name);
+    }
   for (const Row& row : rows()) session().edit({row.edit()}), session().run(2);
   for (const uint32_t side : {64u, 16u, 48u}) session().edit({Edit(SetImageSize{side, side})}), session().run(3);
   // Away with every need, and back.

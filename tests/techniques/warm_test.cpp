@@ -47,6 +47,7 @@ class Warm : public testing::Test {
     m_session = std::make_unique<TestSession>(sceneOf(1000), config);
     m_warmUp = processorSeconds() - begin;
     m_session->watch(true);
+    EXPECT_TRUE(m_session->untilWarm());
   }
   TestSession& session() { return *m_session; }
 

@@ -194,6 +194,37 @@ TEST(EditApply, HistoryLeavesNoTrace) {
   EXPECT_EQ(direct.hash(), detour.hash());
 }
 
+TEST(EditApply, AnEnvironmentImageIsComparedByItsTexels) {
+  const auto sky = [](const std::string& name, float value) {
+    Image image;
+    image.name = name;
+    image.width = image.height = 1;
+    image.rgbaF = {value, value, value, 1.0f};
+    return std::make_shared<const Image>(std::move(image));
+  };
+  Scene scene = smallScene();
+  const uint64_t without = scene.hash();
+  const auto set = [&](std::shared_ptr<const Image> image) {
+    return applied(scene, {SetEnvironment{.image = std::move(image)}});
+  };
+  const ChangeSet first = set(sky("a", 1.0f));
+  EXPECT_TRUE(first.environment && first.environmentImage);
+  EXPECT_EQ(first.cost(), CostClass::relight);
+  EXPECT_TRUE(set(sky("a", 1.0f)).empty());
+  EXPECT_TRUE(applied(scene, {SetEnvironment{.rotation = 0.0f}}).empty());
+  const uint64_t with = scene.hash();
+  EXPECT_TRUE(set(sky("a", 2.0f)).environmentImage);
+  EXPECT_TRUE(set(sky("b", 2.0f)).environmentImage);
+  EXPECT_NE(with, scene.hash());
+  EXPECT_NE(with, without);
+  const ChangeSet turned = applied(scene, {SetEnvironment{.rotation = 1.0f}, SetEnvironment{.rotation = 2.0f}});
+  EXPECT_TRUE(turned.environment && !turned.environmentImage);
+  EXPECT_TRUE(applied(scene, {SetEnvironment{.rotation = 0.0f, .image = nullptr}}).environmentImage);
+  EXPECT_EQ(scene.environment.image, nullptr);
+  EXPECT_EQ(scene.hash(), without);
+  EXPECT_TRUE(set(nullptr).empty());
+}
+
 TEST(EditCost, DearestChangeCounts) {
   const auto cost = [](const std::vector<Edit>& edits) {
     Scene scene = smallScene();

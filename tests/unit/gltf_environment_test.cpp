@@ -1,6 +1,7 @@
 // Environment images: Radiance HDR and OpenEXR, by their bytes and not by their names.
 #include <limits>
 
+#include "renderer/scene/environment_image.hpp"
 #include "tests/unit/gltf_builder.hpp"
 #include "tests/unit/gltf_images.hpp"
 
@@ -16,7 +17,7 @@ Loaded loadBytes(const std::vector<uint8_t>& bytes, const LoadLimits& limits = {
                  const std::string& name = "sky.img") {
   const TempFolder folder;
   std::vector<std::string> notes;
-  Result<Image> image = loadEnvironmentImage(folder.write(name, asString(bytes)), limits, notes);
+  Result<Image> image = loadEnvironmentImage(folder.write(name, asString(bytes)), {{}, limits}, notes);
   return {std::move(image), std::move(notes)};
 }
 
@@ -94,6 +95,72 @@ TEST(GltfEnvironment, DeepAndMultiPartFilesAreRefused) {
   std::vector<uint8_t> parts = exr({"R", "G", "B"}, {1, 2, 3}, 1, 1);
   parts[5] |= 0x10;  // version field: multi-part
   EXPECT_EQ(loadBytes(parts).image.error().code, "unsupported");
+}
+
+/// A square whose extras name an environment, in a folder with a sky of 2x1 texels at skies/sky.exr.
+Result<LoadedScene> loadNaming(const nlohmann::json& extras, const LoadOptions& options = {}) {
+  const TempFolder folder;
+  folder.write("room/skies/sky.exr", asString(exr({"R", "G", "B"}, {1, 2, 3, 4, 5, 6}, 2, 1)));
+  folder.write("room/notes.txt", "no image");
+  folder.write("outside.exr", asString(exr({"R", "G", "B"}, {1, 2, 3}, 1, 1)));
+  GltfBuilder b;
+  b.square();
+  b.doc["extras"] = extras;
+  return loadGltf(folder.write("room/room.glb", b.glb()), options);
+}
+
+nlohmann::json naming(const nlohmann::json& uri) { return {{"limn", {{"environment", uri}}}}; }
+
+TEST(GltfEnvironment, ExtrasOfTheRootNameIt) {
+  const Result<LoadedScene> loaded = loadNaming(naming("skies/sky%2Eexr"));
+  ASSERT_TRUE(loaded.ok()) << loaded.error().text();
+  const Environment& environment = loaded->scene.environment;
+  ASSERT_NE(environment.image, nullptr);
+  EXPECT_EQ(environment.image->name, "skies/sky.exr");
+  EXPECT_EQ(environment.image->rgbaF, (std::vector<float>{1, 2, 3, 1, 4, 5, 6, 1}));
+  EXPECT_EQ(environment.radiance, glm::vec3(1.0f));
+  EXPECT_EQ(loaded->report.notes[0], "environment image: \"skies/sky.exr\", 2x1");
+  EXPECT_EQ(loaded->report.imageBytes, 2u * 16u);
+  for (const std::string& note : loaded->report.notes) EXPECT_EQ(note.find("no light"), std::string::npos) << note;
+}
+
+TEST(GltfEnvironment, WhatAFileNamesIsConfinedAndChecked) {
+  const std::pair<nlohmann::json, const char*> cases[] = {
+      {"../outside.exr", "path"}, {"/etc/passwd", "path"},         {"http://host/sky.exr", "path"},
+      {"skies", "path"},          {"skies/none.exr", "io"},        {"notes.txt", "unsupported"},
+      {7, "bad-file"},            {"data:;base64,AAAA", "unsupported"}};
+  for (const auto& [uri, code] : cases) {
+    const Result<LoadedScene> loaded = loadNaming(naming(uri));
+    ASSERT_FALSE(loaded.ok()) << uri;
+    EXPECT_EQ(loaded.error().code, code) << uri;
+    EXPECT_EQ(loaded.error().place, "room.glb#/extras/limn/environment") << uri;
+  }
+  LoadOptions options;
+  options.limits.maxImageBytes = 2 * 16;
+  EXPECT_TRUE(loadNaming(naming("skies/sky.exr"), options).ok());
+  options.limits.maxImageBytes = 2 * 16 - 1;
+  EXPECT_EQ(loadNaming(naming("skies/sky.exr"), options).error().code, "limit");
+}
+
+TEST(GltfEnvironment, OtherExtrasAreSomebodyElses) {
+  for (const nlohmann::json& extras : {nlohmann::json(3), nlohmann::json("limn"), nlohmann::json{{"limn", 1}},
+                                       nlohmann::json{{"limn", {{"else", "x"}}}}, nlohmann::json{{"environment", 1}}}) {
+    const Result<LoadedScene> loaded = loadNaming(extras);
+    ASSERT_TRUE(loaded.ok()) << extras;
+    EXPECT_EQ(loaded->scene.environment.image, nullptr) << extras;
+  }
+}
+
+TEST(GltfEnvironment, FilesAreConfinedToTheAssetRoot) {
+  const TempFolder folder;
+  const std::string sky = asString(exr({"R", "G", "B"}, {1, 2, 3}, 1, 1));
+  const std::filesystem::path inside = folder.write("root/skies/sky.exr", sky), outside = folder.write("sky.exr", sky);
+  std::vector<std::string> notes;
+  const LoadOptions options{folder.path() / "root", {}};
+  const Result<Image> image = loadEnvironmentImage(inside, options, notes);
+  ASSERT_TRUE(image.ok()) << image.error().text();
+  EXPECT_EQ(image->name, "skies/sky.exr");
+  EXPECT_EQ(loadEnvironmentImage(outside, options, notes).error().code, "path");
 }
 
 }  // namespace

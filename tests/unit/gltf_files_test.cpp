@@ -176,6 +176,28 @@ TEST(GltfFiles, FileSizeLimitsCoverTheFileAndItsBuffers) {
   EXPECT_EQ(huge.refusal(options), "limit test.glb#/buffers/0/byteLength");
 }
 
+TEST(GltfFiles, TheJsonHasALimitOfItsOwn) {
+  GltfBuilder b;
+  b.square();
+  const std::string glb = b.glb();
+  uint32_t chunk = 0;
+  std::memcpy(&chunk, glb.data() + 12, sizeof chunk);
+  ASSERT_LT(chunk, glb.size());
+  LoadOptions options;
+  options.limits.maxJsonBytes = chunk;
+  EXPECT_TRUE(b.load(options).ok());
+  options.limits.maxJsonBytes = chunk - 1;
+  EXPECT_EQ(b.refusal(options), "limit test.glb");
+
+  GltfBuilder empty;
+  const TempFolder folder;
+  const fs::path file = folder.write("empty.gltf", empty.doc.dump());
+  options.limits.maxJsonBytes = fs::file_size(file);
+  EXPECT_TRUE(loadGltf(file, options).ok());
+  options.limits.maxJsonBytes -= 1;
+  EXPECT_EQ(loadGltf(file, options).error().code, "limit");
+}
+
 TEST(GltfFiles, MissingFilesAndFoldersAreErrors) {
   const TempFolder folder;
   const auto code = [&](const char* name) { return loadGltf(folder.path() / name).error().code; };

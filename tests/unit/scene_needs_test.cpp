@@ -90,9 +90,9 @@ TEST(SceneNeeds, LightsAndEnvironment) {
   EXPECT_EQ(light(1), Names{"punctualLights"});
   EXPECT_EQ(light(0), Names{});
   EXPECT_EQ(needsAfter([](Scene& s) { s.environment.radiance = {0, 0, 1}; }), Names{"environment"});
-  EXPECT_EQ(needsAfter([](Scene& s) { s.environment.image = 0; }), Names{});
+  EXPECT_EQ(needsAfter([](Scene& s) { s.environment.image = std::make_shared<const Image>(); }), Names{});
   EXPECT_EQ(needsAfter([](Scene& s) {
-              s.environment.image = 0, s.environment.radiance = {0, 0, 1};
+              s.environment.image = std::make_shared<const Image>(), s.environment.radiance = {0, 0, 1};
             }),
             (Names{"environment", "environmentImage"}));
   EXPECT_EQ(needsAfter([](Scene& s) { s.meshes[0].primitives[0].colors.resize(3); }), Names{"vertexColors"});

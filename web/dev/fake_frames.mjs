@@ -3,7 +3,7 @@ import { readFileSync } from 'node:fs';
 import jpeg from 'jpeg-js';
 import { PNG } from 'pngjs';
 
-const schema = JSON.parse(readFileSync(new URL('../../protocol/schema.json', import.meta.url), 'utf8'));
+const schema = JSON.parse(readFileSync(new URL('../../protocol/schema_frame.json', import.meta.url), 'utf8'));
 const kMagic = schema.frameHeader.find((field) => field.name === 'magic').value;
 const kPhases = { coarse: 0, converging: 1, converged: 2 };
 

@@ -69,7 +69,7 @@ export function makeScene(width = 320, height = 240) {
     ],
     meshes: ['floor', 'ball'],
     cameras: [{ name: 'Front', perspective: true, yfov: 0.7, ymag: 1, znear: 0.01 }],
-    environment: { radiance: [0.25, 0.3, 0.4], rotation: 0, hasImage: false },
+    environment: { radiance: [0.25, 0.3, 0.4], rotation: 0, hasImage: false, image: '' },
     view: {
       eye: [0, 1.6, 5.2],
       target: [0, 0.6, 0],

@@ -1,7 +1,7 @@
 import type { Vec3 } from '../math/vec3';
 import { eulerFromQuat, quatFromEuler, type Quat } from '../math/rotation';
 import type { EditableField, TechniqueParameter } from '../protocol/messages.gen';
-import { checkField, colorField, numberField, selectField, vectorField, type Field } from '../ui/fields';
+import { checkField, colorField, numberField, selectField, textField, vectorField, type Field } from '../ui/fields';
 import { titleFromName } from '../ui/format';
 
 const kDegrees = 180 / Math.PI;
@@ -29,6 +29,8 @@ export function announcedField(field: EditableField, onInput: (value: WireValue)
       return announcedColorAlpha(field, onInput);
     case 'vector':
       return vectorField({ ...rangeOf(field), components: ['X', 'Y', 'Z'], onInput }) as Field<WireValue>;
+    case 'text':
+      return textField({ ...rangeOf(field), onInput }) as Field<WireValue>;
     case 'quaternion':
       return announcedRotation(field, onInput);
     default:

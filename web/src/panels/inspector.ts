@@ -129,7 +129,7 @@ function sheetsOf(scene: SceneMessage, selection: Selection): Sheet[] {
     case 'nothing':
       return [];
     case 'environment':
-      return [environmentSheet(scene)];
+      return [environmentSheet()];
     case 'material':
       return [materialSheet(scene, selection.material)];
     case 'light':
@@ -192,12 +192,12 @@ function nodeSheet(scene: SceneMessage, node: number): Sheet {
   };
 }
 
-function environmentSheet(scene: SceneMessage): Sheet {
+function environmentSheet(): Sheet {
   return {
     title: 'Environment',
     target: 'environment',
     index: {},
-    facts: [scene.environment.hasImage ? 'an image, multiplied by the radiance' : 'constant radiance'],
+    facts: ['radiance, times the image where there is one'],
     read: (s) => s.environment as unknown as Item,
   };
 }

@@ -142,7 +142,7 @@ function treeOf(scene: SceneMessage): TreeItem[] {
       ...scene.materials.flatMap((m, i) =>
         glows(m.emission) ? [leaf(`glow:${i}`, nameOf(m.name, 'Material', i), 'surface')] : [],
       ),
-      leaf('environment:0', 'Environment', scene.environment.hasImage ? 'image' : 'constant'),
+      leaf('environment:0', 'Environment', scene.environment.image ? 'image' : 'constant'),
     ]),
     ...group(
       'group:cameras',

@@ -116,6 +116,7 @@ export interface NodeEdit {
 export interface EnvironmentEdit {
   radiance?: [number, number, number];  /** multiplies the image where there is one [W·sr⁻¹·m⁻²] */
   rotation?: number;  /** about +y [rad] */
+  image?: string;  /** path of an .hdr or .exr latitude-longitude image under the server's asset root, which is read first; empty: none any more */
 }
 
 /** The view, in a batch. */
@@ -255,6 +256,7 @@ export interface Environment {
   radiance: [number, number, number];  /** constant, or the factor of the image [W·sr⁻¹·m⁻²] */
   rotation: number;  /** about +y [rad] */
   hasImage: boolean;  /** a latitude-longitude image is multiplied by radiance */
+  image: string;  /** its name, as set takes it; empty: none */
 }
 
 /** How radiance is shown. */
@@ -717,6 +719,7 @@ const kStructs: { [name: string]: readonly Field[] } = {
   EnvironmentEdit: [
     { name: "radiance", type: "f32[3]", optional: true, min: 0, max: 1000000000.0 },
     { name: "rotation", type: "f32", optional: true, min: -1000, max: 1000 },
+    { name: "image", type: "string", optional: true, maxLength: 4096 },
   ],
   CameraEdit: [
     { name: "view", type: "View" },
@@ -828,6 +831,7 @@ const kStructs: { [name: string]: readonly Field[] } = {
     { name: "radiance", type: "f32[3]" },
     { name: "rotation", type: "f32" },
     { name: "hasImage", type: "bool" },
+    { name: "image", type: "string" },
   ],
   Resolve: [
     { name: "exposure", type: "f32" },

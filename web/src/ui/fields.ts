@@ -322,6 +322,48 @@ export function selectField(
   };
 }
 
+/** A line of text; it counts when it is committed, not while it is typed. */
+export function textField(options: {
+  label: string;
+  description?: string | undefined;
+  onInput(value: string): void;
+}): Field<string> {
+  const id = uniqueId('text');
+  let shown = '';
+  const show = (value: string) => {
+    shown = value;
+    input.value = value;
+    input.dataset['dirty'] = 'false';
+  };
+  const input = h('input', {
+    type: 'text',
+    id,
+    autocomplete: 'off',
+    spellcheck: 'false',
+    onInput: () => {
+      input.dataset['dirty'] = 'true';
+    },
+    onChange: () => {
+      show(input.value.trim());
+      options.onInput(shown);
+    },
+    onKeydown: (event: KeyboardEvent) => {
+      if (event.key === 'Escape') show(shown);
+    },
+  });
+  return {
+    element: h(
+      'div',
+      { class: 'field text', title: options.description },
+      h('label', { for: id }, labelText(options.label)),
+      input,
+    ),
+    set(value) {
+      if (!isBusy(input)) show(value);
+    },
+  };
+}
+
 export function checkField(
   label: string,
   onInput: (value: boolean) => void,
