@@ -14,9 +14,9 @@ constexpr int kMaxHeaderBytes = 4096;
 constexpr size_t kHeaderSpace = 4096;   ///< of a reply
 constexpr int kStalledHttpSeconds = 10;
 
-/// What every reply says, besides its own headers. Inline styles are the panel library's.
+/// What every reply says, besides its own headers.
 constexpr const char* kContentPolicy =
-    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' blob: data:; "
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
     "connect-src 'self' ws: wss:; worker-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 constexpr std::pair<const char*, const char*> kEveryReply[] = {
     {"content-security-policy:", kContentPolicy},

@@ -101,6 +101,25 @@ test('one finger turns, two fingers come nearer', async () => {
   );
 });
 
+test('two fingers side by side pan', async () => {
+  const touch = await browser.context.newCDPSession(page);
+  const { x, y } = await pointInPicture(page, 0.5, 0.5);
+  const send = (type, left) => {
+    const touchPoints = type === 'touchEnd' ? [] : [left, left + 40].map((px, id) => ({ x: px, y, id }));
+    return touch.send('Input.dispatchTouchEvent', { type, touchPoints });
+  };
+  const start = await pose();
+  await send('touchStart', x - 20);
+  for (let i = 1; i <= 5; i++) await send('touchMove', x - 20 + i * 8);
+  await send('touchEnd');
+  await waitFor(page, (target) => window.limn.rig.current().target[0] !== target[0], start.target);
+  const panned = await pose();
+  assert.ok(Math.abs(distance(panned) - distance(start)) < 1e-6, 'it does not dolly');
+  const moved = panned.target.map((c, i) => c - start.target[i]);
+  assert.ok(Math.hypot(...moved) > 0.01 * distance(start), 'the picture moved');
+  panned.eye.forEach((c, i) => assert.ok(Math.abs(c - start.eye[i] - moved[i]) < 1e-6, 'the eye moved with the target'));
+});
+
 test('keys act on the focused picture only', async () => {
   const start = await pose();
   await page.locator('#connection').click();

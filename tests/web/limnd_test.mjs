@@ -32,7 +32,9 @@ before(async () => {
   port = await freePort();
   daemon = await startDaemon(port, kSize);
   browser = await startBrowser();
+  const opened = performance.now();
   page = await openPage(browser.context, `http://127.0.0.1:${port}/`);
+  console.log(`from opening the page to its first picture: ${Math.round(performance.now() - opened)} ms`);
 });
 
 after(async () => {
@@ -64,6 +66,11 @@ test('the statistics tell about the picture', async () => {
   const text = await page.locator('#stats').textContent();
   const { device } = await page.evaluate(() => window.limn.model.hello);
   assert.ok(text.includes(device), `${device} is not in: ${text}`);
+  await page.waitForFunction(() =>
+    /^Estimated error over time: \d[\d.e-]* after \d[\d.]* seconds$/.test(
+      document.querySelector('#stats canvas.plot').getAttribute('aria-label'),
+    ),
+  );
 });
 
 test('dragging turns the camera and changes the picture', async () => {
@@ -74,6 +81,9 @@ test('dragging turns the camera and changes the picture', async () => {
   await drag(page, [0.35, 0.5], [0.65, 0.4]);
   await waitFor(page, (revision) => window.limn.frame.header.viewRevision > revision, viewRevision);
   await settle(page, kEnoughSteps);
+  await page.waitForFunction(() =>
+    /Edit to pixels\d[\d.]* m?s \(p95 \d[\d.]* m?s\)/.test(document.querySelector('#stats dl').textContent),
+  );
   const difference = gridDifference(gridBefore, await meanGrid(page));
   assert.ok(difference > 6, `the picture changed by ${difference} only`);
   const pose = await page.evaluate(() => window.limn.rig.current());

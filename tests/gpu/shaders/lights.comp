@@ -4,7 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/shared/bvh_shared.h"
 #include "shaders/lib/scene_bindings.glsl"
-#include "shaders/lib/lights.glsl"
+#include "shaders/lib/spherical_triangle.glsl"
 #include "tests/gpu/shaders/lights.h"
 
 layout(local_size_x = 64) in;
@@ -15,6 +15,12 @@ uint state;
 float random() {
   state = state * 747796405u + 2891336453u;
   return toUnit(hash(state));
+}
+
+// A corner of the scene's triangles, as a direction from push.posR.
+vec3 corner(uint index) {
+  uvec4 t = texelFetch(triangles, int(index / 3u));
+  return normalize(texelFetch(positions, int(t[index % 3u])).xyz - push.posR);
 }
 
 // Bins of equal solid angle: rows in the cosine to +y, columns around it as environmentUv counts them.
@@ -35,12 +41,21 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
   state = hash(hash(i) ^ push.seed);
-  if (push.mode == kLightsChoose) {
+  if (push.mode == kLightsSphericalTriangle) {
+    uint first = 3u * push.light;
+    float solidAngle;
+    vec3 dirW = sampleSphericalTriangle(corner(first), corner(first + 1u), corner(first + 2u),
+                                        vec2(random(), random()), solidAngle);
+    result[i] = vec4(dirW, solidAngle);
+  } else if (push.mode == kLightsChoose) {
     vec2 choice = vec2(random(), random());
     uint chosen = chooseLight(choice);
     result[i] = vec4(float(chosen), lights[chosen].probability, choice);
-  } else if (push.mode == kLightsTriangle) {
-    LightSample s = sampleTriangleLight(lights[push.light], push.posR, vec2(random(), random()));
+  } else if (push.mode == kLightsTriangle || push.mode == kLightsTriangleEvenly) {
+    vec2 u = vec2(random(), random());
+    LightSample s;
+    if (push.mode == kLightsTriangle) s = sampleTriangleLight(lights[push.light], push.posR, u);
+    else s = sampleTriangleLightEvenly(lights[push.light], push.posR, u);
     result[2u * i] = vec4(s.dirW, s.distance);
     result[2u * i + 1u] = vec4(s.radiance, s.pdf);
   } else if (push.mode == kLightsEnvironment) {

@@ -1,0 +1,112 @@
+// Flags of limn that only a run of the real program shows to work.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "protocol/json_value.hpp"
+#include "renderer/base/clock.hpp"
+#include "renderer/film/exr.hpp"
+#include "tests/service/cli/run_program.hpp"
+#include "tests/service/service_fixture.hpp"
+
+namespace limn {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+const std::string kScene = LIMN_BUILD_DIR "/scenes/cornell-box.glb";
+
+/// Renders with pipelines kept between them.
+class Flags : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    s_scratch = new test::ScratchDirectory;
+    setenv("XDG_CACHE_HOME", s_scratch->file("cache").c_str(), 1);
+  }
+  static void TearDownTestSuite() { delete s_scratch; }
+  static std::string file(const std::string& name) { return s_scratch->file(name); }
+
+  /// Metadata of a small picture rendered with these flags.
+  static std::map<std::string, std::string> rendered(std::vector<std::string> flags) {
+    const std::string output = file("out.exr");
+    flags.insert(flags.begin(), {"render", kScene, "--output", output, "--size", "24x20", "--stats", file("out.json")});
+    const test::ProgramRun run = test::runProgram(LIMN_PROGRAM, flags);
+    EXPECT_EQ(run.exitCode, 0) << run.err;
+    const Result<FilmImage> image = readExr(output);
+    if (!image) return {};
+    return {image->metadata.begin(), image->metadata.end()};
+  }
+  static double statistic(const std::string& name) {
+    const Result<protocol::JsonValue> stats = protocol::parseJson(test::readText(file("out.json")), 8);
+    EXPECT_TRUE(stats.ok());
+    return stats ? *stats->find(name)->number() : -1.0;
+  }
+
+ private:
+  static inline test::ScratchDirectory* s_scratch = nullptr;
+};
+
+TEST_F(Flags, TechniqueAndItsParameters) {
+  EXPECT_EQ(rendered({"--spp", "1"})["limn:technique"], "path-tracing");
+  auto metadata = rendered({"--technique", "point-projection", "--set", "bounces=2", "--steps", "1"});
+  EXPECT_EQ(metadata["limn:technique"], "point-projection");
+  EXPECT_THAT(metadata["limn:parameters"], HasSubstr("bounces=2"));
+}
+
+TEST_F(Flags, TimeIsRenderedAtLeastSoLong) {
+  EXPECT_GE(std::stod(rendered({"--time", "0.25"})["limn:seconds"]), 0.25);
+}
+
+TEST_F(Flags, UntilErrorStopsWhereTheEstimateIsBelow) {
+  rendered({"--until-error", "0.25"});
+  const double error = statistic("estimatedError");
+  EXPECT_GT(error, 0.0);
+  EXPECT_LE(error, 0.25);
+}
+
+TEST_F(Flags, CameraByNameAndByIndex) {
+  const std::string first = rendered({"--spp", "1"})["limn:view"];
+  EXPECT_FALSE(first.empty());
+  EXPECT_EQ(rendered({"--spp", "1", "--camera", "Camera"})["limn:view"], first);
+  EXPECT_EQ(rendered({"--spp", "1", "--camera", "0"})["limn:view"], first);
+}
+
+TEST_F(Flags, SendGivesUpAfterItsTimeout) {
+  server::testing::TestService service;
+  service.renderer->hold(true);
+  std::ofstream(file("script.jsonl")) << R"({"op":"set","target":"material","material":0,"roughness":0.25})" << '\n';
+  const std::string url = "ws://127.0.0.1:" + std::to_string(service.port()) + "/ws";
+  const test::ProgramRun run =
+      test::runProgram(LIMN_PROGRAM, {"send", url, file("script.jsonl"), "--timeout", "0.25"});
+  service.renderer->hold(false);
+  EXPECT_EQ(run.exitCode, 1);
+  EXPECT_THAT(run.err, HasSubstr("no answer to seq 2 within 0.25 s"));
+}
+
+TEST_F(Flags, DevicesAreListedByTheirIndex) {
+  const test::ProgramRun run = test::runProgram(LIMN_PROGRAM, {"devices"});
+  EXPECT_EQ(run.exitCode, 0) << run.err;
+  EXPECT_THAT(run.out, StartsWith("0  "));
+  for (const char* told : {"; driver ", "; Vulkan 1.", " GiB of its own memory; ray query: "})
+    EXPECT_THAT(run.out, HasSubstr(told));
+}
+
+TEST_F(Flags, InfoTellsWhatTheFileHolds) {
+  const test::ProgramRun run = test::runProgram(LIMN_PROGRAM, {"info", kScene});
+  EXPECT_EQ(run.exitCode, 0) << run.err;
+  for (const char* told : {"cornell-box.glb, hash ", "triangles: 38", "materials: 4", "0 Camera: perspective"})
+    EXPECT_THAT(run.out, HasSubstr(told));
+}
+
+TEST_F(Flags, ALostDeviceIsExit75) {
+  setenv("LIMN_LOSE_DEVICE_AT", "3", 1);
+  const test::ProgramRun run =
+      test::runProgram(LIMN_PROGRAM, {"render", kScene, "--output", file("lost.exr"), "--size", "24x20"});
+  unsetenv("LIMN_LOSE_DEVICE_AT");
+  EXPECT_EQ(run.exitCode, 75);
+  EXPECT_THAT(run.err, HasSubstr("limn render: vkQueueSubmit2 failed with VK_ERROR_DEVICE_LOST"));
+  EXPECT_FALSE(std::filesystem::exists(file("lost.exr")));
+}
+
+}  // namespace
+}  // namespace limn
