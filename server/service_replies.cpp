@@ -164,7 +164,7 @@ void Service::checkErrorWaits(ClientSession& session, const FrameInfo& info) {
     if (origin.client == session.id()) applied = origin.seq;
   if (applied < session.lastEditSeq) return;
   for (ErrorWait& wait : session.errorWaits) {
-    const bool reached = info.estimatedError <= wait.error || info.phase == Phase::converged;
+    const bool reached = info.errorHigh <= wait.error || info.phase == Phase::converged;
     if (reached && !wait.asked) wait.asked = m_mailbox.push(WaitRequest{{session.id(), wait.seq}, 1});
   }
 }

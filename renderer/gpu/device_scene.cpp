@@ -167,7 +167,7 @@ Result<void> DeviceScene::writeEnvironment(const Scene& scene) {
 }
 
 Result<void> DeviceScene::checkEnvironment(const Image& image) const {
-  vk::BufferDesc desc = describe("environment", VK_FORMAT_R32G32B32A32_SFLOAT);
+  vk::BufferDesc desc = describe(kEnvironment, "environment", VK_FORMAT_R32G32B32A32_SFLOAT);
   desc.size = size_t(image.width) * image.height * sizeof(glm::vec4);
   const auto room = vk::Buffer::create(m_device, desc);
   return room ? Result<void>() : Result<void>(room.error());

@@ -111,7 +111,7 @@ struct Status {
   Phase phase = Phase::coarse;
   bool idle = false;
   uint32_t steps = 0;
-  float meanSamples = 0.0f, estimatedError = 0.0f;
+  float meanSamples = 0.0f, estimatedError = 0.0f, errorHigh = 0.0f;  ///< as FrameInfo's
   double raysPerSecond = 0.0;
   double secondsSinceRestart = 0.0;
   uint64_t discardedSamples = 0;

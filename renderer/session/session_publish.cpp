@@ -51,7 +51,9 @@ Result<void> Session::Impl::publish() {
   return {};
 }
 
+// The halves of a biased film agree about its bias: of that nothing is told rather than too little.
 Result<void> Session::Impl::estimateError() {
+  if (technique->info().biased) return {};
   auto estimate = statistics->estimate(device, *film);
   if (!estimate) return estimate.error();
   error = *estimate;
@@ -103,6 +105,7 @@ void Session::Impl::refreshStatus() {
   status.steps = progress.passes;
   status.meanSamples = float(error.meanSamples);
   status.estimatedError = float(error.relMse);
+  status.errorHigh = float(error.high);
   status.secondsSinceRestart = nowSeconds() - restartedAt;
   status.raysPerSecond = sampledSeconds > 0.0 ? double(technique->raysTraced() - raysAtRestart) / sampledSeconds : 0.0;
   status.discardedSamples = technique->discardedSamples();

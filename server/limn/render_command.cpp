@@ -84,7 +84,7 @@ class Render {
     const Result<Status> status = m_session->status();
     if (!status) return status.error();
     m_stats.status = *status;
-    return PassState{status->steps, status->estimatedError, status->phase == Phase::converged};
+    return PassState{status->steps, status->estimatedError, status->errorHigh, status->phase == Phase::converged};
   }
 
   Result<FilmImage> film(double seconds) {

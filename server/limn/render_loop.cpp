@@ -5,7 +5,7 @@ namespace {
 
 bool ended(const StopRule& stop, double seconds, const PassState& state) {
   return state.converged || (stop.seconds && seconds >= *stop.seconds) || (stop.steps && state.steps >= *stop.steps) ||
-         (stop.error && state.error <= *stop.error);
+         (stop.error && state.errorHigh <= *stop.error);
 }
 
 }  // namespace
