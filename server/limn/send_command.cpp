@@ -202,7 +202,7 @@ Command sendCommand() {
            "Sends the messages of a script to limnd, one JSON object a line, each after the answer to the one before.",
            {"URL", "SCRIPT.jsonl"},
            {{"save", "DIR", "keep frames and saved files there"},
-            {"wait-error", "E", "after the last message wait until the estimated relMSE is this small, at its upper end"},
+            {"wait-error", "E", "after the last message wait until the upper end of the estimated relMSE is this small"},
             {"timeout", "SECONDS", "give up when an answer takes longer (default: 60)"}}},
           run};
 }

@@ -364,7 +364,7 @@ export interface Wait {
   op: "wait";
   seq: number;  /** rises from message to message of a client */
   steps?: number;  /** passes since the last restart */
-  error?: number;  /** estimated relMSE at or below this */
+  error?: number;  /** upper end of the estimated relMSE at or below this */
 }
 
 /** The client will close. Answered by bye, then close 1000. */
