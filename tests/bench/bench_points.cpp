@@ -25,9 +25,6 @@ T orExit(Result<T> result) {
   }
   return result.take();
 }
-void orExit(Result<void> result) {
-  if (!result) orExit(Result<int>(result.error()));
-}
 
 struct Options {
   std::string scene;
