@@ -1,5 +1,6 @@
 #include "renderer/gpu/camera.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace limn::gpu {
@@ -15,7 +16,9 @@ shared::CameraData cameraData(const View& view, const glm::dvec3& renderOrigin, 
   const double halfWidth = halfHeight * width / height;
   shared::CameraData data{};
   data.eyeR = glm::vec3(view.eye - renderOrigin);
-  data.clipNear = view.lens.znear;
+  // An eye on a surface sees the side that it looks to.
+  const double rounding = 16.0 / 16777216.0 * std::max({std::abs(data.eyeR.x), std::abs(data.eyeR.y), std::abs(data.eyeR.z)});
+  data.clipNear = std::max(view.lens.znear, float(rounding));
   data.right = glm::vec3(right * halfWidth);
   data.perspective = view.lens.perspective ? 1 : 0;
   data.up = glm::vec3(up * halfHeight);

@@ -97,7 +97,7 @@ LightSample sampleChosenLight(LightData light, vec3 p, float uAlias, vec2 u) {
   float d = length(toLight);
   if (!(d > 0.0)) return s;
   s.dirW = toLight / d;
-  s.distance = d;
+  s.distance = d * (1.0 - 2e-5);  // a surface that the light lies on does not hide it
   float window = rangeWindow(light, d);
   if (light.type == kLightSpot) window *= spotRamp(light, s.dirW);
   s.radiance = light.color * (window / light.probability) / d / d;

@@ -17,8 +17,9 @@ vec3 sampleSphericalTriangle(vec3 a, vec3 b, vec3 c, vec2 u, out float solidAngl
   solidAngle = 0.0;
   if (!(min(dot(ab, ab), min(dot(bc, bc), dot(ca, ca))) > 0.0)) return a;
   ab = normalize(ab), bc = normalize(bc), ca = normalize(ca);
-  float alpha = angleBetween(ab, -ca), sum = alpha + angleBetween(bc, -ab) + angleBetween(ca, -bc);
-  solidAngle = max(sum - kPi, 0.0);
+  // The sum of the angles less pi loses the digits of small triangles. [van Oosterom and Strackee 1983]
+  solidAngle = 2.0 * atan(abs(dot(a, cross(b, c))), 1.0 + dot(a, b) + dot(b, c) + dot(c, a));
+  float alpha = angleBetween(ab, -ca), sum = kPi + solidAngle;
 
   float part = mix(kPi, sum, u.x);  // of a triangle that shares a, b and has u.x of the area
   float cosAlpha = cos(alpha), sinAlpha = sin(alpha);

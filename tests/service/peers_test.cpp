@@ -249,7 +249,7 @@ TEST(Loading, anEnvironmentImageThatCannotBeReadChangesNothing) {
     const auto error = client.await<protocol::ErrorMessage>();
     EXPECT_EQ(error.seq, seq) << uri;
     EXPECT_EQ(error.code, code) << uri;
-    EXPECT_EQ(error.place, "/edits/1/image") << uri;
+    EXPECT_EQ(error.place, "seq " + std::to_string(seq) + " /edits/1/image") << uri;
     EXPECT_NE(error.message.find(uri), std::string::npos) << error.message;
   }
   client.send(protocol::Describe{++seq});

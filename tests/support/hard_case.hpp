@@ -20,6 +20,9 @@ struct KnownMiss {
   double fireflies = 0.0;
 };
 
+/// Light that glass and mirrors focus reaches points by few paths, and is interpolated between them.
+KnownMiss interpolatedCaustics();
+
 /// A scene that is awkward in one way, and what its picture must be: that of a twin without the awkwardness, or the same radiance
 /// everywhere. With neither, it is compared with an unbiased technique's picture.
 struct HardCase {

@@ -72,7 +72,8 @@ std::vector<HardCase> placeCases() {
   std::vector<HardCase> cases{
       place("closed black box", "A lamp inside, and nothing that sends its light on", lampInBlackBox, 0.0),
       place("closed box under a sky", "No light comes in", skyOutside, 0.0),
-      place("camera in glass", "A glass ball around the eye in a furnace of 1", eyeInGlass, 1.0),
+      place("camera in glass", "A glass ball around the eye in a furnace of 1: in a medium, radiance is as the square of its index",
+            eyeInGlass, 1.5 * 1.5),
       place("camera in a wall", "The eye in the wall of a shining box, five bounces", eyeInWall, 1.0 - std::pow(0.5, 6.0)),
       place("touching bodies", "Two boxes, one on the other, are one", [] { return pillar(0.0f); }, {}),
       place("interpenetrating bodies", "Two boxes, one in the other, are one", [] { return pillar(0.3f); }, {}),
@@ -82,6 +83,7 @@ std::vector<HardCase> placeCases() {
     cases[i].twin = [] { return pillar({}); };
   }
   cases[6].caustics = true;
+  cases[6].known = {interpolatedCaustics()};
   return cases;
 }
 

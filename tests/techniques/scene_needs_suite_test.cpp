@@ -195,6 +195,7 @@ class PipelinesSuite : public testing::TestWithParam<std::string> {
 
 TEST_P(PipelinesSuite, TheStatusSaysWhichAreAtWorkAndTheyAreCutToTheSceneWhenNobodyLooks) {
   load(session(), plainScene());
+  ASSERT_TRUE(session().untilWarm());
   const uint64_t plain = session().hash();
   expectAtWork(kTailored);
   session().apply({metal(1.0f, 0.2f)});
