@@ -9,7 +9,7 @@ namespace limn {
 namespace {
 
 /// Slots of every cluster that the first picture after a change of light is made of.
-constexpr uint32_t kPreviewSlots = 32, kPreviewPaths = 4;
+constexpr uint32_t kPreviewSlots = 32, kPreviewPaths = 1;
 /// Passes 1 to 3 refine to every 4th, 2nd and each pixel; from this one on what was interpolated is gathered, share by share,
 /// and then every pixel again.
 constexpr uint32_t kFirstLatePass = 4, kShares = 64;

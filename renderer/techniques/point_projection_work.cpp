@@ -48,7 +48,8 @@ shared::PointProjectionPush PointProjectionTechnique::gatherPush(const Technique
 }
 
 Result<void> PointProjectionTechnique::gather(const TechniqueContext& context, uint32_t first, uint32_t count) {
-  const auto push = gatherPush(context, first, count);
+  auto push = gatherPush(context, first, count);
+  if (m_preview) push.correctionRays = 0;  // most points that rays would find are dark yet
   const auto all = gatherBindings(context);
   m_work.pixelsGathered += count;
   return gpu::runNow(context.device, [&](vk::CommandRecorder& r) { m_gather.recordAtPixels(r, all, push); });
