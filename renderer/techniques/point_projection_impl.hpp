@@ -94,6 +94,7 @@ class PointProjectionTechnique final : public Technique {
   Result<void> relight(const TechniqueContext& context, SlotRange slots, uint32_t samples);
   Result<void> paths(const TechniqueContext& context, SlotRange slots, uint32_t samples);
   Result<uint32_t> listBounceSites(const TechniqueContext& context, bool first);
+  Result<uint32_t> beginSpread(const TechniqueContext& context, uint32_t endSlot, bool compose);
   Result<void> spread(const TechniqueContext& context, SlotRange slots, bool compose);
   Result<void> sites(const TechniqueContext& context, uint32_t first, uint32_t count);
   shared::PointProjectionPush gatherPush(const TechniqueContext& context, uint32_t first, uint32_t count) const;

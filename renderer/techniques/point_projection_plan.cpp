@@ -126,7 +126,7 @@ void PointProjectionTechnique::pushBounce(bool first, uint32_t endSlot, bool com
 
 void PointProjectionTechnique::pushSpread(TaskQueue& queue, uint32_t endSlot, bool compose) {
   queue.push({"spread", &m_spreadRate,
-              [this, endSlot](const TechniqueContext&) -> Result<uint32_t> { return endSlot - std::min(m_bounceSlots, endSlot); },
+              [this, endSlot, compose](const TechniqueContext& c) { return beginSpread(c, endSlot, compose); },
               [this, compose](const TechniqueContext& c, uint32_t from, uint32_t count) {
                 return spread(c, {m_bounceSlots + from, m_bounceSlots + from + count}, compose);
               }});

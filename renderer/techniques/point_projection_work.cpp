@@ -84,6 +84,16 @@ Result<uint32_t> PointProjectionTechnique::listBounceSites(const TechniqueContex
   return m_bounceSites;
 }
 
+// Slots to spread to. Where bounces arrived at all points, there are none, and the points send on what they have.
+Result<uint32_t> PointProjectionTechnique::beginSpread(const TechniqueContext& context, uint32_t endSlot, bool compose) {
+  const uint32_t slots = endSlot - std::min(m_bounceSlots, endSlot);
+  if (slots > 0 || !compose) return slots;
+  const PointLightContext lighting = lightContext(context);
+  auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) { m_light.recordCompose(r, lighting, {0, endSlot}); });
+  if (!done) return done.error();
+  return 0u;
+}
+
 // Light that arrived at the sites of a bounce is spread over all points, which then send it on.
 Result<void> PointProjectionTechnique::spread(const TechniqueContext& context, SlotRange slots, bool compose) {
   const PointLightContext lighting = lightContext(context);
