@@ -188,6 +188,7 @@ Result<void> PointProjectionTechnique::restart(const TechniqueContext& context, 
   m_tasks.forgetTimes();
   m_lighting.forgetTimes();
   m_pass = m_shaded = 0;
+  m_levelStride = m_levelCount = m_levelDone = m_lateTurn = 0;
   m_fillStride = PixelOrder::kStrides[0];
   m_converged = m_preview = false;
   const bool dark = !m_lit && m_lighting.empty();

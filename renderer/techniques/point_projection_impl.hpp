@@ -84,11 +84,13 @@ class PointProjectionTechnique final : public Technique {
   void pushBounce(bool first, uint32_t endSlot, bool compose);
   void pushSites(uint32_t from, uint32_t end);
   void pushGather(const char* name, Task::Begin select);
+  Result<uint32_t> selectLevel(const TechniqueContext& context, uint32_t stride);
   void pushLevel(uint32_t stride);
+  void pushLevelPart();
   void pushLateShare(uint32_t turn);
   void pushFill(uint32_t stride, uint32_t last = 1);
   void pushFilter();
-  void pushShade(uint32_t end, bool firstOfFilm, bool firstOfGather);
+  void pushShade(uint32_t end, bool firstOfFilm);
 
   // point_projection_work.cpp
   Result<void> relight(const TechniqueContext& context, SlotRange slots, uint32_t samples);
@@ -100,7 +102,8 @@ class PointProjectionTechnique final : public Technique {
   shared::PointProjectionPush gatherPush(const TechniqueContext& context, uint32_t first, uint32_t count) const;
   Result<void> gather(const TechniqueContext& context, uint32_t first, uint32_t count);
   Result<void> gatherAtPoints(const TechniqueContext& context, uint32_t first, uint32_t count);
-  Result<void> shade(const TechniqueContext& context, uint32_t first, uint32_t count, bool firstOfFilm, bool firstOfGather);
+  Result<void> fill(const TechniqueContext& context, uint32_t stride, uint32_t last);
+  Result<void> shade(const TechniqueContext& context, uint32_t first, uint32_t count, bool firstOfFilm);
 
   PointProjectionSettings m_settings;
   SceneNeeds m_needs;
@@ -131,6 +134,11 @@ class PointProjectionTechnique final : public Technique {
   bool m_previewLit = false;   ///< a first part of them carries some of it
   uint32_t m_litSlots = 0;     ///< of every cluster, lit so far, the first ones
   uint32_t m_round = 0;        ///< of the present gathers
+  uint32_t m_levelStride = 0;  ///< [pixel] of the level being gathered; 0: all are
+  uint32_t m_levelCount = 0, m_levelDone = 0;  ///< pixels of that level, selected and gathered
+  uint32_t m_listFirst = 0;    ///< entry of m_list that the present gathers begin at
+  uint32_t m_lateTurn = 0;     ///< shares gathered after the levels
+  bool m_dropLookedUp = false; ///< by the samples of this pass
   float m_meanLuminance = 0.0f;  ///< gathered on the start grid [W·sr⁻¹·m⁻²]
   uint32_t m_pass = 0;
   bool m_preview = false;      ///< a first picture from few points is under way

@@ -10,9 +10,12 @@ namespace {
 
 /// Slots of every cluster that the first picture after a change of light is made of.
 constexpr uint32_t kPreviewSlots = 32, kPreviewPaths = 1;
-/// Passes 1 to 3 refine to every 4th, 2nd and each pixel; from this one on what was interpolated is gathered, share by share,
-/// and then every pixel again.
-constexpr uint32_t kFirstLatePass = 4, kShares = 64;
+/// Passes after the first that only take a sample of direct light: its noise is most of what is wrong by then.
+constexpr uint32_t kDirectPasses = 3;
+/// A later pass gathers at one pixel of so many, but never at fewer than these: about as long as its sample of direct light takes.
+constexpr uint32_t kPixelsPerGather = 256, kLeastLevelGathers = 256, kLeastLateGathers = 64;
+/// Passes between two that filter, once every level is gathered.
+constexpr uint32_t kFilterEvery = 4;
 /// Coherence that tells different objects apart: thresholds that begin below stay there, so that edges are gathered at
 /// every level.
 constexpr float kObjectEdge = 0.9f;
@@ -25,7 +28,7 @@ constexpr float kDisplayRange = 16.0f;
 // After a change of light: a picture from a first part of the points, and before all light is there. It is shown, and then
 // replaced: no bit of it stays, so that pass 0 is the same whether there was a preview or not.
 void PointProjectionTechnique::planPreview() {
-  m_preview = true;
+  m_preview = m_dropLookedUp = true;
   const uint32_t slots = std::min(kPreviewSlots, m_light.layout().clusterSize);
   if (!m_previewLit) pushRelight(m_tasks, {0, slots}, 1, m_previewRate);
   if (!m_previewLit && bouncesAtPoints() > 0 && m_settings.paths > 0) pushPaths(m_tasks, kPreviewPaths, slots);
@@ -37,30 +40,30 @@ void PointProjectionTechnique::planPreview() {
   pushCoarsePicture();
   pushSites(m_pixelOrder.levelEnd[0], uint32_t(m_pixelOrder.pixels.size()));
   pushFill(PixelOrder::kStrides[0] / 2);
-  pushShade(uint32_t(m_pixelOrder.pixels.size()), true, true);
+  pushShade(uint32_t(m_pixelOrder.pixels.size()), true);
 }
 
+// Pass 0 gathers a coarse grid. After a few that gather nothing, others refine to every 4th, 2nd and each pixel, a part of a level
+// each; then what was interpolated is gathered, share by share, and then every pixel again. All take a sample of direct light.
 void PointProjectionTechnique::planPass(uint32_t pass) {
   const auto pixels = uint32_t(m_pixelOrder.pixels.size());
-  if (!gathers()) return pushShade(pixels, pass == 0, false);
+  // Light that was looked up before is dropped when a level is complete, and each time that the number of samples has
+  // doubled: at least half of them always know what the latest gathers know.
+  m_dropLookedUp = pass == 0 || std::has_single_bit(pass);
+  if (!gathers()) return pushShade(pixels, pass == 0);
   if (pass == 0) {
     pushCoarsePicture();
     pushSites(m_pixelOrder.levelEnd[0], pixels);
     for (uint32_t stride = m_settings.startGrid / 2; stride >= PixelOrder::kStrides[0]; stride /= 2) pushLevel(stride);
     pushFill(PixelOrder::kStrides[0] / 2);
-    return pushShade(pixels, true, true);
+    m_levelStride = std::min(m_settings.startGrid / 2, PixelOrder::kStrides[1]);
+  } else if (pass > kDirectPasses && m_levelStride > 0) {
+    pushLevelPart();
+  } else if (pass > kDirectPasses) {
+    pushLateShare(m_lateTurn);
+    if (m_lateTurn++ % kFilterEvery == 0) pushFilter();
   }
-  if (pass < kFirstLatePass) {
-    const uint32_t stride = PixelOrder::kStrides[pass];
-    if (stride < m_settings.startGrid) pushLevel(stride);
-    pushFill(stride / 2);
-  } else {
-    pushLateShare(pass - kFirstLatePass);
-  }
-  if (pass + 1 >= kFirstLatePass) pushFilter();
-  // Light that was looked up before is dropped while much is gained by it, and then each time that the number of samples has
-  // doubled: at least half of them always know what the latest gathers know.
-  pushShade(pixels, false, pass <= kFirstLatePass || std::has_single_bit(pass));
+  pushShade(pixels, pass == 0);
 }
 
 // A picture of every 8th pixel, as soon as the start grid is gathered.
@@ -77,7 +80,7 @@ void PointProjectionTechnique::pushCoarsePicture() {
                   return 0u;
                 }, {}});
   pushFill(m_settings.startGrid / 2, PixelOrder::kStrides[0]);
-  pushShade(m_pixelOrder.levelEnd[0], true, true);
+  pushShade(m_pixelOrder.levelEnd[0], true);
 }
 
 // The last bounce arrives at the pixels; the points need it only where rays through sharp lobes end at them.
@@ -138,39 +141,61 @@ void PointProjectionTechnique::pushSites(uint32_t from, uint32_t end) {
 }
 
 void PointProjectionTechnique::pushGather(const char* name, Task::Begin select) {
+  m_listFirst = 0;
   m_tasks.push({name, &m_gatherRate, std::move(select),
-                [this](const TechniqueContext& c, uint32_t first, uint32_t count) { return gather(c, first, count); }, 32});
+                [this](const TechniqueContext& c, uint32_t first, uint32_t count) { return gather(c, m_listFirst + first, count); }, 32});
+}
+
+Result<uint32_t> PointProjectionTechnique::selectLevel(const TechniqueContext& context, uint32_t stride) {
+  m_round = 0;
+  float threshold = m_settings.threshold;
+  for (uint32_t s = m_settings.startGrid / 2; s > stride; s /= 2) threshold *= 2.0f;
+  if (m_settings.threshold < kObjectEdge) threshold = std::min(threshold, kObjectEdge);
+  const CoherenceRule rule{threshold, m_settings.lambda, float(context.scene.radius()), kDisplayRange * m_meanLuminance};
+  return m_grid.selectIncoherent(context.device, placement(), stride, rule);
 }
 
 void PointProjectionTechnique::pushLevel(uint32_t stride) {
-  pushGather("level", [this, stride](const TechniqueContext& c) {
-    m_round = 0;
-    float threshold = m_settings.threshold;
-    for (uint32_t s = m_settings.startGrid / 2; s > stride; s /= 2) threshold *= 2.0f;
-    if (m_settings.threshold < kObjectEdge) threshold = std::min(threshold, kObjectEdge);
-    const CoherenceRule rule{threshold, m_settings.lambda,
-                             float(c.scene.radius()), kDisplayRange * m_meanLuminance};
-    return m_grid.selectIncoherent(c.device, placement(), stride, rule);
-  });
+  pushGather("level", [this, stride](const TechniqueContext& c) { return selectLevel(c, stride); });
   pushFill(stride, stride);
+}
+
+// The next gathers of the level of m_levelStride; with the last of them it is filled and the next level's turn comes.
+void PointProjectionTechnique::pushLevelPart() {
+  pushGather("level", [this](const TechniqueContext& c) -> Result<uint32_t> {
+    if (m_levelDone == m_levelCount) {
+      auto selected = selectLevel(c, m_levelStride);
+      if (!selected) return selected.error();
+      m_levelCount = *selected;
+      m_levelDone = 0;
+    }
+    m_listFirst = m_levelDone;
+    const uint32_t part = std::max(m_width * m_height / kPixelsPerGather, kLeastLevelGathers);
+    m_levelDone += std::min(part, m_levelCount - m_levelDone);
+    return m_levelDone - m_listFirst;
+  });
+  m_tasks.push({"interpolate", nullptr, [this](const TechniqueContext& c) -> Result<uint32_t> {
+                  if (m_levelDone < m_levelCount) return 0u;
+                  m_dropLookedUp = true;
+                  const uint32_t stride = m_levelStride;
+                  m_levelStride /= 2;
+                  if (auto done = fill(c, stride, 1); !done) return done.error();
+                  return 0u;
+                }, {}});
 }
 
 void PointProjectionTechnique::pushLateShare(uint32_t turn) {
   pushGather("remaining", [this, turn](const TechniqueContext& c) {
-    m_round = turn / kShares;
-    const uint32_t share = (m_grid.scatteredCount() + kShares - 1) / kShares;
-    return m_grid.selectScattered(c.device, placement(), turn % kShares * share, share, m_round == 0);
+    const uint32_t all = m_grid.scatteredCount(), share = std::max(all / kPixelsPerGather, kLeastLateGathers);
+    const uint32_t shares = (all + share - 1) / share;
+    m_round = turn / shares;
+    return m_grid.selectScattered(c.device, placement(), turn % shares * share, share, m_round == 0);
   });
 }
 
-// Interpolates the grids of `stride`, half of it, and so on until that of `last`.
 void PointProjectionTechnique::pushFill(uint32_t stride, uint32_t last) {
   m_tasks.push({"interpolate", nullptr, [this, stride, last](const TechniqueContext& c) -> Result<uint32_t> {
-                  auto done = gpu::runNow(c.device, [&](vk::CommandRecorder& r) {
-                    for (uint32_t s = stride; s >= std::max(last, 1u); s /= 2) m_reconstruct.recordInterpolate(r, reconstruction(), s);
-                  });
-                  m_useFiltered = false;
-                  if (!done) return done.error();
+                  if (auto done = fill(c, stride, last); !done) return done.error();
                   return 0u;
                 }, {}});
 }
@@ -179,6 +204,7 @@ void PointProjectionTechnique::pushFilter() {
   if (m_settings.filterSize < 3) return;
   m_tasks.push({"filter", &m_filterRate,
                 [this](const TechniqueContext&) -> Result<uint32_t> {
+                  m_dropLookedUp = m_dropLookedUp || !m_useFiltered;
                   m_useFiltered = true;
                   return m_height;
                 },
@@ -189,10 +215,10 @@ void PointProjectionTechnique::pushFilter() {
                 }, 4});
 }
 
-void PointProjectionTechnique::pushShade(uint32_t end, bool firstOfFilm, bool firstOfGather) {
+void PointProjectionTechnique::pushShade(uint32_t end, bool firstOfFilm) {
   m_tasks.push({"shade", &m_shadeRate, [end](const TechniqueContext&) -> Result<uint32_t> { return end; },
-                [this, firstOfFilm, firstOfGather](const TechniqueContext& c, uint32_t first, uint32_t count) {
-                  return shade(c, first, count, firstOfFilm, firstOfGather);
+                [this, firstOfFilm](const TechniqueContext& c, uint32_t first, uint32_t count) {
+                  return shade(c, first, count, firstOfFilm);
                 }, 256});
 }
 

@@ -105,10 +105,17 @@ Result<void> PointProjectionTechnique::spread(const TechniqueContext& context, S
   });
 }
 
-Result<void> PointProjectionTechnique::shade(const TechniqueContext& context, uint32_t first, uint32_t count, bool firstOfFilm,
-                                             bool firstOfGather) {
+// Interpolates the grids of `stride`, half of it, and so on until that of `last`.
+Result<void> PointProjectionTechnique::fill(const TechniqueContext& context, uint32_t stride, uint32_t last) {
+  m_useFiltered = false;
+  return gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
+    for (uint32_t s = stride; s >= std::max(last, 1u); s /= 2) m_reconstruct.recordInterpolate(r, reconstruction(), s);
+  });
+}
+
+Result<void> PointProjectionTechnique::shade(const TechniqueContext& context, uint32_t first, uint32_t count, bool firstOfFilm) {
   const shared::ShadePush push{first,       count,         context.firstSample + m_pass, context.seed,
-                               firstOfFilm, firstOfGather, !gathers(),                   0};
+                               firstOfFilm, m_dropLookedUp, !gathers(),                   0};
   const auto all = shadeBindings(context);
   auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) { m_shade->record(r, all, push, workgroups(count)); });
   if (m_pass > 0) return done;

@@ -27,6 +27,8 @@ SessionConfig fewPoints() { return pointProjection(48, 32, 2, 0, {{"points", 163
 
 const std::vector<const char*> kPoints{"sample points", "move points", "cluster points", "upload points"};
 const std::vector<const char*> kLighting{"relight", "paths", "spread"};
+/// Passes until all levels are gathered and filtered.
+constexpr uint32_t kEveryStage = 16;
 const std::vector<const char*> kPicture{"sites", "start grid", "level", "interpolate", "filter", "shade"};
 
 TEST(StageTimes, EveryTechniqueTellsAndNoneTwice) {
@@ -54,7 +56,7 @@ TEST(StageTimes, EveryTechniqueTellsAndNoneTwice) {
 
 TEST(StageTimes, OfPointsAndOfTheirLightUntilTheyAreKept) {
   TestSession session(plainScene(), fewPoints());
-  session.run(4);
+  session.run(kEveryStage);
   expectTimed(session.status(), kPoints, true);
   expectTimed(session.status(), kLighting, true);
   expectTimed(session.status(), kPicture, true);
@@ -63,7 +65,7 @@ TEST(StageTimes, OfPointsAndOfTheirLightUntilTheyAreKept) {
   camera.view = session.scene().view;
   camera.view.eye.x += 0.01;
   session.apply({camera});
-  session.run(4);
+  session.run(kEveryStage);
   expectTimed(session.status(), kPoints, false);
   expectTimed(session.status(), kLighting, false);
   expectTimed(session.status(), kPicture, true);
