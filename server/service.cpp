@@ -115,6 +115,7 @@ void Service::onTick() {
 }
 
 void Service::onDrain() {
+  routeReplies();  // a closing session takes no message: what the renderer said before, its own end among it, goes out first
   for (auto& [id, session] : m_sessions) closeSession(session, CloseCode::goingAway, "the daemon stops");
 }
 
