@@ -12,10 +12,9 @@ namespace {
 constexpr uint32_t kPreviewSlots = 32, kPreviewPaths = 1;
 /// Passes after the first that only take a sample of direct light: its noise is most of what is wrong by then.
 constexpr uint32_t kDirectPasses = 3;
-/// A later pass gathers at one pixel of so many, but never at fewer than these: about as long as its sample of direct light takes.
-constexpr uint32_t kPixelsPerGather = 256, kLeastLevelGathers = 256, kLeastLateGathers = 64;
-/// Passes between two that filter, once every level is gathered.
-constexpr uint32_t kFilterEvery = 4;
+/// A later pass gathers at one pixel of so many, of a level at no fewer than these: a few times as long as its samples of direct
+/// light take, since interpolated light is what is wrong longest where a scene is intricate.
+constexpr uint32_t kPixelsPerGather = 64, kLeastLevelGathers = 256;
 /// Coherence that tells different objects apart: thresholds that begin below stay there, so that edges are gathered at
 /// every level.
 constexpr float kObjectEdge = 0.9f;
@@ -60,8 +59,8 @@ void PointProjectionTechnique::planPass(uint32_t pass) {
   } else if (pass > kDirectPasses && m_levelStride > 0) {
     pushLevelPart();
   } else if (pass > kDirectPasses) {
-    pushLateShare(m_lateTurn);
-    if (m_lateTurn++ % kFilterEvery == 0) pushFilter();
+    pushLateShare(m_lateTurn++);
+    pushFilter();
   }
   pushShade(pixels, pass == 0);
 }
@@ -186,10 +185,9 @@ void PointProjectionTechnique::pushLevelPart() {
 
 void PointProjectionTechnique::pushLateShare(uint32_t turn) {
   pushGather("remaining", [this, turn](const TechniqueContext& c) {
-    const uint32_t all = m_grid.scatteredCount(), share = std::max(all / kPixelsPerGather, kLeastLateGathers);
-    const uint32_t shares = (all + share - 1) / share;
-    m_round = turn / shares;
-    return m_grid.selectScattered(c.device, placement(), turn % shares * share, share, m_round == 0);
+    m_round = turn / kPixelsPerGather;
+    const uint32_t share = (m_grid.scatteredCount() + kPixelsPerGather - 1) / kPixelsPerGather;
+    return m_grid.selectScattered(c.device, placement(), turn % kPixelsPerGather * share, share, m_round == 0);
   });
 }
 
