@@ -21,7 +21,10 @@ Result<vk::Buffer> makeReadback(vk::Device& device, size_t bytes, const char* na
 
 /// The spread of tile errors gives the interval: tiles err nearly independently.
 FilmError combine(std::span<const shared::TileError> tiles, double meanValue, double meanSamples) {
-  FilmError error{std::numeric_limits<double>::infinity(), 0.0, std::numeric_limits<double>::infinity(), meanSamples, meanValue};
+  FilmError error;
+  error.meanSamples = meanSamples;
+  error.meanValue = meanValue;
+  error.withhold();
   double sum = 0.0, pixels = 0.0;
   for (const shared::TileError& t : tiles) sum += t.errorSum, pixels += t.pixels;
   if (!(pixels > 0.0)) return error;

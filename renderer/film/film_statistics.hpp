@@ -1,4 +1,6 @@
 #pragma once
+#include <limits>
+
 #include "renderer/film/film.hpp"
 #include "renderer/gpu/pass.hpp"
 
@@ -10,6 +12,12 @@ struct FilmError {
   double low = 0.0, high = 0.0;  ///< 95 % interval, from the spread of the tiles
   double meanSamples = 0.0;   ///< per pixel
   double meanValue = 0.0;     ///< of all pixels and channels [W·sr⁻¹·m⁻²]
+
+  /// Keeps the means alone: the error may be anything.
+  void withhold() {
+    low = 0.0;
+    relMse = high = std::numeric_limits<double>::infinity();
+  }
 };
 
 /// Estimates the film's error from its two half buffers, and lists the pixels that need more samples. Render thread.

@@ -53,10 +53,10 @@ Result<void> Session::Impl::publish() {
 
 // The halves of a biased film agree about its bias: of that nothing is told rather than too little.
 Result<void> Session::Impl::estimateError() {
-  if (technique->info().biased) return {};
   auto estimate = statistics->estimate(device, *film);
   if (!estimate) return estimate.error();
   error = *estimate;
+  if (technique->info().biased) error.withhold();
   return {};
 }
 

@@ -230,6 +230,21 @@ TEST_F(Loop, ALoadThatFailedChangesNothing) {
   EXPECT_EQ(session().status().restarts, restarts);
 }
 
+TEST(LoopFigures, EveryTechniqueTellsItsSamplesAndABiasedOneNoError) {
+  for (const TechniqueInfo& info : techniqueInfos()) {
+    SCOPED_TRACE(info.name);
+    SessionConfig config = smallPicture();
+    config.technique = info.name;
+    TestSession session(plainScene(), config);
+    constexpr uint32_t kPasses = 3;
+    session.run(kPasses);
+    const Status status = session.status();
+    EXPECT_GE(status.meanSamples, float(kPasses)) << "a pass takes one sample of every pixel at least";
+    EXPECT_EQ(std::isinf(status.estimatedError), info.biased);
+    EXPECT_EQ(std::isinf(status.errorHigh), info.biased);
+  }
+}
+
 TEST_F(Loop, DescribeTellsWhatPanelsNeed) {
   session().edit({intensity(6.0f), Edit(SetResolve{0.5f, ToneMap::agx})});
   session().ask(DescribeRequest{});

@@ -35,6 +35,17 @@ const ledger = () => page.locator('#ledger').textContent();
 const pose = () => page.evaluate(() => window.limn.rig.current());
 const distance = (p) => Math.hypot(...p.eye.map((c, i) => c - p.target[i]));
 
+test('the picture and the line under it stay between the panels', async () => {
+  await waitFor(page, () => /\d/.test(document.querySelector('#ledger .figures').textContent));
+  const [left, picture, ledger, right] = await page.evaluate(() =>
+    ['.column.left', '#picture', '#ledger', '.column.right'].map((place) => {
+      const box = document.querySelector(place).getBoundingClientRect();
+      return { from: box.left, to: box.right };
+    }),
+  );
+  for (const shown of [picture, ledger]) assert.ok(shown.from >= left.to && shown.to <= right.from, JSON.stringify(shown));
+});
+
 test('a drag sends at most one camera edit a display frame, and the picture never goes back', async () => {
   const edits = server.world.edits;
   await drag(page, [0.2, 0.4], [0.8, 0.6]);
