@@ -161,7 +161,7 @@ function onMessage(message: ServerMessage): void {
       model.setHello(message);
       break;
     case 'scene':
-      model.setScene(message);
+      model.setScene(desk.ahead(message));
       break;
     case 'status':
       model.setStatus(message);

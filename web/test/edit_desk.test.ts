@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { FrameReport, Outgoing } from '../src/channel';
 import { describeOutcome } from '../src/panels/ledger';
-import type { FrameHeader } from '../src/protocol/messages.gen';
+import type { FrameHeader, SceneMessage } from '../src/protocol/messages.gen';
 import { EditDesk, type Outcome } from '../src/state/edit_desk';
 
 function makeDesk() {
@@ -106,5 +106,40 @@ describe('EditDesk', () => {
     expect(desk.cameraPending()).toBe(true);
     desk.onAck(ack(2, 're-gather', true));
     expect(desk.cameraPending()).toBe(false);
+  });
+
+  it('keeps what was edited over descriptions that were made before it', () => {
+    const { desk, posted, displayFrame } = makeDesk();
+    const parameters = { gain: 1 };
+    const told = (roughness: number) =>
+      ({ materials: [{}, {}, { roughness }], technique: 'flat', parameters }) as unknown as SceneMessage;
+    const shown = (scene: SceneMessage) => desk.ahead(scene).materials[2]?.roughness;
+    expect(shown(told(0.5))).toBe(0.5);
+    desk.set('Roughness', roughness(0.1));
+    expect(shown(told(0.5))).toBe(0.1); // waits for the display frame
+    displayFrame(100);
+    expect(shown(told(0.5))).toBe(0.1); // is on its way
+    desk.set('Roughness', roughness(0.2));
+    desk.set('Gain', { target: 'technique', parameters: { gain: 3 } });
+    expect(shown(told(0.5))).toBe(0.2);
+    expect(desk.ahead(told(0.5)).parameters).toEqual({ gain: 3 });
+    displayFrame(200);
+    posted.forEach(({ ticket }, i) => desk.onSent(ticket, 7 + i));
+    desk.onAck(ack(7));
+    expect(shown(told(0.1))).toBe(0.2);
+    desk.onAck(ack(8));
+    expect(shown(told(0.9))).toBe(0.9); // somebody else edited it after us
+    desk.onError({ op: 'error', seq: 9, code: 'out-of-range', message: 'too much' });
+    expect(desk.ahead(told(0.9)).parameters).toEqual({ gain: 1 }); // it was refused
+  });
+
+  it('keeps the view over descriptions that were made before it', () => {
+    const { desk, posted } = makeDesk();
+    const told = { view: { eye: [0, 0, 9], yfov: 1 } } as unknown as SceneMessage;
+    desk.camera({ eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0] });
+    desk.onSent(posted[0]!.ticket, 2);
+    expect(desk.ahead(told).view).toEqual({ eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], yfov: 1 });
+    desk.onAck(ack(2, 're-gather'));
+    expect(desk.ahead(told).view).toEqual(told.view);
   });
 });

@@ -39,6 +39,12 @@ describe('Model', () => {
     expect(withEdit(scene, { target: 'resolve', exposure: 2 }).resolve).toEqual({ exposure: 2, toneMap: 'aces', view: 'beauty' });
   });
 
+  it('does not carry parameters over to another technique', () => {
+    const chosen = withEdit(scene, { target: 'technique', technique: 'point-projection' });
+    expect([chosen.technique, chosen.parameters]).toEqual(['point-projection', {}]);
+    expect(withEdit(scene, { target: 'technique', technique: 'path-tracing' }).parameters).toEqual({ maxBounces: 8 });
+  });
+
   it('keeps the selection through a description of the same scene, and drops it with another', () => {
     const model = new Model();
     model.setScene(scene);

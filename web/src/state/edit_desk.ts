@@ -1,5 +1,6 @@
 import type { FrameReport, Outgoing } from '../channel';
-import type { Ack, CostClass, Edit, ErrorMessage, View } from '../protocol/messages.gen';
+import type { Ack, CostClass, Edit, ErrorMessage, SceneMessage, View } from '../protocol/messages.gen';
+import { withEdit } from './model';
 
 /** What became of one edit of this person. */
 export interface Outcome {
@@ -22,6 +23,7 @@ export interface DeskHooks {
 
 interface Draft {
   label: string;
+  edit: Edit;
   message: Outgoing;
   inputMs: number;
   camera: boolean;
@@ -49,7 +51,8 @@ export class EditDesk {
     const index = 'material' in edit ? edit.material : 'light' in edit ? edit.light : 'node' in edit ? edit.node : 0;
     const key = `${edit.target}/${index}/${Object.keys(edit).sort().join()}/${label}`;
     const inputMs = this.drafts.get(key)?.inputMs ?? this.hooks.now();
-    this.drafts.set(key, { label, message: { op: 'set', ...edit } as Outgoing, inputMs, camera: false });
+    const message = { op: 'set', ...edit } as Outgoing;
+    this.drafts.set(key, { label, edit, message, inputMs, camera: false });
     this.schedule();
   }
 
@@ -57,6 +60,7 @@ export class EditDesk {
   camera(view: View): void {
     this.send({
       label: 'Camera',
+      edit: { target: 'camera', view },
       message: { op: 'camera', ...view } as Outgoing,
       inputMs: this.hooks.now(),
       camera: true,
@@ -66,6 +70,15 @@ export class EditDesk {
   /** True while camera edits are on their way: the server's view is then older than ours. */
   cameraPending(): boolean {
     return [...this.pending.values()].some((p) => p.draft.camera && p.cost === null);
+  }
+
+  /**
+   * A description as it will be once the server has taken all that was edited here. The server answers in the order in
+   * which it works: a description holds the edits whose acknowledgement came before it, and none of the others.
+   */
+  ahead(scene: SceneMessage): SceneMessage {
+    const unanswered = [...this.pending.values()].filter((p) => p.cost === null).map((p) => p.draft);
+    return [...unanswered, ...this.drafts.values()].reduce((s, draft) => withEdit(s, draft.edit), scene);
   }
 
   onSent(ticket: number, seq: number | null, reason = ''): void {

@@ -130,12 +130,12 @@ export function withEdit(scene: SceneMessage, edit: Edit): SceneMessage {
       const { target: _, ...fields } = edit;
       return { ...scene, resolve: { ...scene.resolve, ...fields } };
     }
-    case 'technique':
-      return {
-        ...scene,
-        technique: edit.technique ?? scene.technique,
-        parameters: { ...scene.parameters, ...edit.parameters },
-      };
+    case 'technique': {
+      const technique = edit.technique ?? scene.technique;
+      // Another technique begins with its own defaults, whatever its predecessor's parameters of the same names were.
+      const kept = technique === scene.technique ? scene.parameters : {};
+      return { ...scene, technique, parameters: { ...kept, ...edit.parameters } };
+    }
     case 'image':
       return { ...scene, width: edit.width, height: edit.height };
   }
