@@ -40,7 +40,10 @@ export async function startBrowser(options = {}) {
   };
 }
 
-/** Opens the page and waits for its first picture. Errors of the page are collected in `page.errors`. */
+/**
+ * Opens the page and waits for its first picture and for the scene, without which nothing can be edited. Errors of the
+ * page are collected in `page.errors`.
+ */
 export async function openPage(context, url) {
   const page = await context.newPage();
   page.errors = [];
@@ -54,7 +57,7 @@ export async function openPage(context, url) {
       page.errors.push(message.text());
   });
   await page.goto(url);
-  await waitFor(page, () => window.limn?.frame != null);
+  await waitFor(page, () => window.limn?.frame != null && window.limn.model.connected());
   return page;
 }
 
@@ -65,17 +68,26 @@ export const waitFor = (page, condition, argument) =>
 /** The newest presented frame's header. */
 export const frameHeader = (page) => page.evaluate(() => window.limn.frame.header);
 
-/** Waits for a picture that holds the newest edit and has at least `steps` passes. */
-export async function settle(page, steps) {
-  await waitFor(
-    page,
-    (least) => {
-      const { frame, acks } = window.limn;
-      const last = acks.at(-1);
-      return (!last || frame.header.ackSeq >= last.seq) && frame.header.steps >= least;
-    },
-    steps,
-  );
+/** Waits for a picture that holds all that was edited in the page and has at least `steps` passes. */
+export const settle = (page, steps) =>
+  waitFor(page, (least) => window.limn.settled() && window.limn.frame.header.steps >= least, steps);
+
+/** Waits for the lossless picture of all that was edited in the page, after which nothing more comes. */
+export const atRest = (page) =>
+  waitFor(page, () => window.limn.settled() && (window.limn.frame.header.flags & 6) === 6);
+
+/** Types into a number field of a panel and waits until a picture shows it. */
+export async function typeNumber(page, panel, label, value) {
+  const field = page.locator(panel).getByLabel(label, { exact: true });
+  await field.fill(String(value));
+  await field.press('Enter');
+  await settle(page, 0);
+}
+
+/** Chooses in a list of a panel and waits until a picture shows it. */
+export async function choose(page, panel, label, value) {
+  await page.locator(panel).getByLabel(label, { exact: true }).selectOption(value);
+  await settle(page, 0);
 }
 
 /** Mean colours of a grid of areas over the canvas: what changes when the picture changes, and not with its noise. */

@@ -13,11 +13,11 @@ export async function freePort() {
   return port;
 }
 
-/** Starts the program of the environment's LIMND on LIMN_SCENE and waits until it is ready. */
-export async function startDaemon(port, extra = []) {
-  const { LIMND, LIMN_SCENE } = process.env;
-  if (!LIMND || !LIMN_SCENE) throw new Error('set LIMND to the program and LIMN_SCENE to a scene file');
-  const args = ['--scene', LIMN_SCENE, '--listen', `127.0.0.1:${port}`, ...extra];
+/** Starts the program of the environment's LIMND, on LIMN_SCENE if no other is named, and waits until it is ready. */
+export async function startDaemon(port, extra = [], scene = process.env.LIMN_SCENE) {
+  const { LIMND } = process.env;
+  if (!LIMND || !scene) throw new Error('set LIMND to the program and LIMN_SCENE to a scene file');
+  const args = ['--scene', scene, '--listen', `127.0.0.1:${port}`, ...extra];
   // A script stands in for the program while these tests themselves are worked on.
   const command = LIMND.endsWith('.mjs') ? [process.execPath, [LIMND, ...args]] : [LIMND, args];
   const child = spawn(...command, { stdio: ['ignore', 'pipe', 'pipe'] });

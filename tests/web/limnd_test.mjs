@@ -4,6 +4,7 @@ import { readFileSync } from 'node:fs';
 import { basename } from 'node:path';
 import { after, before, test } from 'node:test';
 import {
+  atRest,
   drag,
   frameHeader,
   gridDifference,
@@ -13,6 +14,7 @@ import {
   sceneOf,
   settle,
   startBrowser,
+  typeNumber,
   waitFor,
 } from './browser.mjs';
 import { freePort, startDaemon } from './daemon.mjs';
@@ -43,15 +45,6 @@ after(async () => {
 });
 
 const hash = () => page.evaluate(() => window.limn.hash());
-
-/** Types into a number field of a panel and waits until a picture shows it. */
-async function typeNumber(panel, label, value) {
-  const before = await page.evaluate(() => window.limn.acks.length);
-  const field = page.locator(panel).getByLabel(label, { exact: true });
-  await field.fill(String(value));
-  await field.press('Enter');
-  await waitFor(page, (count) => window.limn.acks.length > count, before);
-}
 
 test('the picture appears', async () => {
   const picture = await hash();
@@ -123,11 +116,9 @@ test('the material panel changes a colour in the canvas', async () => {
 });
 
 test('the canvas at rest equals the pixels of the server', async () => {
-  await typeNumber('#render', 'Max samples', kSamplesAtRest);
-  await waitFor(
-    page,
-    () => window.limn.frame.header.phase === 'converged' && (window.limn.frame.header.flags & 6) === 6,
-  );
+  await typeNumber(page, '#render', 'Max samples', kSamplesAtRest);
+  await atRest(page);
+  assert.equal((await frameHeader(page)).phase, 'converged');
   const shown = await hash();
   const header = await frameHeader(page);
   const peer = await Peer.connect(port);
@@ -142,11 +133,8 @@ test('exposure changes the picture without a restart', async () => {
   const { steps } = await frameHeader(page);
   const shown = await hash();
   const gridBefore = await meanGrid(page);
-  await typeNumber('#render', 'Exposure', 1.5);
-  await waitFor(
-    page,
-    () => window.limn.frame.header.ackSeq >= window.limn.acks.at(-1).seq && (window.limn.frame.header.flags & 4) !== 0,
-  );
+  await typeNumber(page, '#render', 'Exposure', 1.5);
+  await atRest(page);
   assert.equal(await page.evaluate(() => window.limn.acks.at(-1).cost), 'display-only');
   assert.ok((await frameHeader(page)).steps >= steps, 'sampling was restarted');
   assert.ok(gridDifference(gridBefore, await meanGrid(page)) > 6);

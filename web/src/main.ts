@@ -59,7 +59,7 @@ const link = new StreamLink(byId<HTMLCanvasElement>('picture'), socketUrl(), tok
   onFault,
   onSent: (ticket, seq, reason) => desk.onSent(ticket, seq, reason),
 });
-const hook = makeTestHook(model, statistics, rig, link);
+const hook = makeTestHook(model, statistics, rig, desk, link);
 window.limn = hook;
 const bar = new Bar(byId('connection'), byId('phase'), model, () => link.retry());
 

@@ -2,7 +2,7 @@ import type { Area, FrameReport, PixelHash } from './channel';
 import type { CameraRig } from './camera/rig';
 import type { Ack, FrameHeader, Picked } from './protocol/messages.gen';
 import type { Model } from './state/model';
-import type { Outcome } from './state/edit_desk';
+import type { EditDesk, Outcome } from './state/edit_desk';
 import type { Statistics } from './state/statistics';
 import type { StreamLink } from './stream_link';
 
@@ -19,6 +19,8 @@ export interface TestHook {
   outcomes: Outcome[];
   picks: Picked[];
   faults: string[];
+  /** True when the picture on the screen holds all that was edited here. */
+  settled(): boolean;
   /** SHA-256 over the RGBA bytes of the canvas, row 0 on top. */
   hash(): Promise<PixelHash>;
   /** Mean sRGB value of an area of the canvas, 0..255. */
@@ -33,7 +35,13 @@ declare global {
 
 const kKept = 100;
 
-export function makeTestHook(model: Model, statistics: Statistics, rig: CameraRig, link: StreamLink): TestHook {
+export function makeTestHook(
+  model: Model,
+  statistics: Statistics,
+  rig: CameraRig,
+  desk: EditDesk,
+  link: StreamLink,
+): TestHook {
   return {
     model,
     statistics,
@@ -44,6 +52,7 @@ export function makeTestHook(model: Model, statistics: Statistics, rig: CameraRi
     outcomes: [],
     picks: [],
     faults: [],
+    settled: () => !rig.busy() && desk.settled(),
     hash: () => link.hash(),
     mean: (area) => link.mean(area),
   };

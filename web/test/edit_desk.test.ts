@@ -108,6 +108,23 @@ describe('EditDesk', () => {
     expect(desk.cameraPending()).toBe(false);
   });
 
+  it('is settled when every edit is on the screen, refused, or changed nothing', () => {
+    const { desk, posted, displayFrame } = makeDesk();
+    expect(desk.settled()).toBe(true);
+    for (const value of [0.1, 0.2, 0.3]) {
+      desk.set('Roughness', roughness(value));
+      expect(desk.settled()).toBe(false); // waits for the display frame
+      displayFrame(1000 * value);
+    }
+    posted.forEach(({ ticket }, i) => desk.onSent(ticket, 7 + i));
+    desk.onAck(ack(7));
+    desk.onAck(ack(8, 'none'));
+    desk.onError({ op: 'error', seq: 9, code: 'out-of-range', message: 'too much' });
+    expect(desk.settled()).toBe(false); // the first has no picture yet
+    desk.onFrame(picture(7, 1400));
+    expect(desk.settled()).toBe(true);
+  });
+
   it('keeps what was edited over descriptions that were made before it', () => {
     const { desk, posted, displayFrame } = makeDesk();
     const parameters = { gain: 1 };

@@ -72,6 +72,11 @@ export class EditDesk {
     return [...this.pending.values()].some((p) => p.draft.camera && p.cost === null);
   }
 
+  /** True when all that was edited is on the screen, or has no picture to wait for. */
+  settled(): boolean {
+    return this.drafts.size === 0 && this.pending.size === 0;
+  }
+
   /**
    * A description as it will be once the server has taken all that was edited here. The server answers in the order in
    * which it works: a description holds the edits whose acknowledgement came before it, and none of the others.
