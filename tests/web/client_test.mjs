@@ -12,6 +12,7 @@ import {
   sceneOf,
   settle,
   startBrowser,
+  typeNumber,
   waitFor,
 } from './browser.mjs';
 import { Peer } from './peer.mjs';
@@ -268,6 +269,19 @@ test('a camera of the file moves the view', async () => {
     page,
     () => Math.abs(window.limn.rig.current().eye[1] - 1.4) < 1e-9 && window.limn.rig.current().eye[2] === 5,
   );
+});
+
+test('the field of view stays as it was typed, and follows the camera back', async () => {
+  const field = page.locator('#render').getByLabel('Field of view', { exact: true });
+  const before = await field.inputValue();
+  await typeNumber(page, '#render', 'Field of view', 30);
+  await typeNumber(page, '#render', 'Exposure', 0.5);
+  assert.equal(await field.inputValue(), '30');
+  assert.ok(Math.abs((await pose()).lens.yfov - Math.PI / 6) < 1e-9);
+  await page.locator('#stage').focus();
+  await page.keyboard.press('r');
+  await settle(page, 0);
+  assert.equal(await field.inputValue(), before);
 });
 
 test('every input has a name, and the live region speaks', async () => {

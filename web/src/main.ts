@@ -37,6 +37,7 @@ const announcer = new Announcer((text) => setText(byId('announcer'), text));
 const ledger = new Ledger(byId('ledger'));
 const stage = new Stage(byId('stage'), byId('stale'), byId('marker'), model);
 const desk = new EditDesk({
+  show: (edit) => model.applyLocally(edit),
   post: (ticket, message) => link.send(ticket, message),
   requestFrame,
   now: nowMs,
@@ -106,10 +107,7 @@ function tokenOfAddress(): string | null {
 
 /** An edit by a panel: shown at once, sent with the next display frame. */
 function edit(label: string, change: Edit): void {
-  whenConnected(() => {
-    model.applyLocally(change);
-    desk.set(label, change);
-  });
+  whenConnected(() => desk.set(label, change));
 }
 
 function request(message: Outgoing): void {

@@ -1,15 +1,17 @@
 import { describe, expect, it } from 'vitest';
 import type { FrameReport, Outgoing } from '../src/channel';
 import { describeOutcome } from '../src/panels/ledger';
-import type { FrameHeader, SceneMessage } from '../src/protocol/messages.gen';
+import type { Edit, FrameHeader, SceneMessage, View } from '../src/protocol/messages.gen';
 import { EditDesk, type Outcome } from '../src/state/edit_desk';
 
 function makeDesk() {
   const posted: { ticket: number; message: Outgoing }[] = [];
+  const shown: Edit[] = [];
   const outcomes: Outcome[] = [];
   let frames: ((now: number) => void)[] = [];
   let clock = 1000;
   const desk = new EditDesk({
+    show: (edit) => void shown.push(edit),
     post: (ticket, message) => void posted.push({ ticket, message }),
     requestFrame: (callback) => void frames.push(callback),
     now: () => clock,
@@ -21,7 +23,7 @@ function makeDesk() {
     frames = [];
     due.forEach((callback) => callback(now));
   };
-  return { desk, posted, outcomes, displayFrame };
+  return { desk, posted, shown, outcomes, displayFrame };
 }
 
 const picture = (ackSeq: number, presentedMs: number, dropped = false) =>
@@ -106,6 +108,15 @@ describe('EditDesk', () => {
     expect(desk.cameraPending()).toBe(true);
     desk.onAck(ack(2, 're-gather', true));
     expect(desk.cameraPending()).toBe(false);
+  });
+
+  it('shows every edit at once, those of the camera too', () => {
+    const { desk, posted, shown } = makeDesk();
+    const view: View = { eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], yfov: 0.5 };
+    desk.set('Roughness', roughness(0.1));
+    desk.camera(view);
+    expect(shown).toEqual([roughness(0.1), { target: 'camera', view }]);
+    expect(posted.map((p) => p.message)).toEqual([{ op: 'camera', ...view }]); // the other waits for the display frame
   });
 
   it('is settled when every edit is on the screen, refused, or changed nothing', () => {

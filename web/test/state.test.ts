@@ -1,7 +1,7 @@
 import { describe, expect, it, vi } from 'vitest';
 import type { FrameReport } from '../src/channel';
 import { fitPicture, pixelAt } from '../src/panels/stage';
-import type { FrameHeader, SceneMessage } from '../src/protocol/messages.gen';
+import type { FrameHeader, SceneMessage, View } from '../src/protocol/messages.gen';
 import { Model, withEdit } from '../src/state/model';
 import { Statistics, thin } from '../src/state/statistics';
 import { Announcer } from '../src/ui/announcer';
@@ -37,6 +37,17 @@ describe('Model', () => {
       maxBounces: 3,
     });
     expect(withEdit(scene, { target: 'resolve', exposure: 2 }).resolve).toEqual({ exposure: 2, toneMap: 'aces', view: 'beauty' });
+  });
+
+  it('keeps the lens that a camera edit brings, and what it leaves out', () => {
+    const model = new Model();
+    model.setScene(scene);
+    const look: View = { eye: [0, 0, 3], target: [0, 0, 0], up: [0, 1, 0] };
+    model.applyLocally({ target: 'camera', view: { ...look, yfov: 0.5 } });
+    expect(model.scene?.view).toEqual({ ...look, yfov: 0.5 });
+    model.applyLocally({ target: 'camera', view: { ...look, eye: [0, 1, 3] } });
+    model.applyLocally({ target: 'resolve', exposure: 1 });
+    expect(model.scene?.view).toEqual({ ...look, eye: [0, 1, 3], yfov: 0.5 });
   });
 
   it('does not carry parameters over to another technique', () => {

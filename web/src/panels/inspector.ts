@@ -37,7 +37,9 @@ export class Inspector {
     model.on('selection', () => this.rebuild());
     model.on('hello', () => this.rebuild());
     model.on('scene', () => this.rebuildOrRefresh());
-    model.on('edited', () => this.refresh());
+    model.on('edited', (edit) => {
+      if (edit.target !== 'camera') this.refresh();
+    });
     this.rebuild();
   }
 

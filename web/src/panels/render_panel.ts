@@ -43,7 +43,12 @@ export class RenderPanel {
     });
     model.on('hello', (hello) => this.build(hello));
     model.on('scene', (scene) => this.refresh(scene));
-    model.on('edited', () => model.scene && this.refresh(model.scene));
+    model.on('edited', (edit) => {
+      if (!model.scene) return;
+      // A gesture edits the camera with every display frame.
+      if (edit.target === 'camera') this.showLens(model.scene);
+      else this.refresh(model.scene);
+    });
   }
 
   private build(hello: ServerHello): void {
@@ -94,10 +99,14 @@ export class RenderPanel {
       const value = (scene.resolve as unknown as Record<string, WireValue>)[name];
       if (value !== undefined) field.set(value);
     }
-    if (scene.view.yfov !== undefined) this.fieldOfView.set(Number((scene.view.yfov * kDegrees).toFixed(3)));
-    this.fieldOfView.element.hidden = scene.view.perspective === false;
+    this.showLens(scene);
     this.showSizes(scene);
     this.showTechnique(scene);
+  }
+
+  private showLens({ view }: SceneMessage): void {
+    if (view.yfov !== undefined) this.fieldOfView.set(Number((view.yfov * kDegrees).toFixed(3)));
+    this.fieldOfView.element.hidden = view.perspective === false;
   }
 
   private showTechnique(scene: SceneMessage): void {

@@ -14,6 +14,8 @@ export interface Outcome {
 }
 
 export interface DeskHooks {
+  /** Shows an edit at once, before the server hears of it. */
+  show(edit: Edit): void;
   /** Hands a message to the worker under a ticket; `sent` comes back with its seq. */
   post(ticket: number, message: Outgoing): void;
   requestFrame(callback: (nowMs: number) => void): void;
@@ -36,7 +38,10 @@ interface Pending {
 
 const kMinFlushMs = 1000 / 60 - 1;
 
-/** Sends edits, at most one a display frame for each thing edited, and follows each until its pixels are on screen. */
+/**
+ * Shows edits, sends them, at most one a display frame for each thing edited, and follows each until its pixels are on
+ * screen.
+ */
 export class EditDesk {
   private drafts = new Map<string, Draft>();
   private pending = new Map<number, Pending>(); // by ticket
@@ -52,15 +57,18 @@ export class EditDesk {
     const key = `${edit.target}/${index}/${Object.keys(edit).sort().join()}/${label}`;
     const inputMs = this.drafts.get(key)?.inputMs ?? this.hooks.now();
     const message = { op: 'set', ...edit } as Outgoing;
+    this.hooks.show(edit);
     this.drafts.set(key, { label, edit, message, inputMs, camera: false });
     this.schedule();
   }
 
   /** The view; callers pace it themselves. */
   camera(view: View): void {
+    const edit: Edit = { target: 'camera', view };
+    this.hooks.show(edit);
     this.send({
       label: 'Camera',
-      edit: { target: 'camera', view },
+      edit,
       message: { op: 'camera', ...view } as Outgoing,
       inputMs: this.hooks.now(),
       camera: true,
