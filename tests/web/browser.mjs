@@ -41,10 +41,11 @@ export async function startBrowser(options = {}) {
 }
 
 /**
- * Opens the page and waits for its first picture and for the scene, without which nothing can be edited. Errors of the
- * page are collected in `page.errors`.
+ * Opens the page and waits for its first picture, `page.firstPictureMs` after the call, and for the scene, without which
+ * nothing can be edited. Errors of the page are collected in `page.errors`.
  */
 export async function openPage(context, url) {
+  const openedMs = performance.now();
   const page = await context.newPage();
   page.errors = [];
   page.on('pageerror', (error) => page.errors.push(error.message));
@@ -57,7 +58,9 @@ export async function openPage(context, url) {
       page.errors.push(message.text());
   });
   await page.goto(url);
-  await waitFor(page, () => window.limn?.frame != null && window.limn.model.connected());
+  await waitFor(page, () => window.limn?.frame != null);
+  page.firstPictureMs = performance.now() - openedMs;
+  await waitFor(page, () => window.limn.model.connected());
   return page;
 }
 
