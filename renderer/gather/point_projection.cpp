@@ -39,7 +39,7 @@ std::vector<uint32_t> gatherConstants(const SceneNeeds& needs, bool lobes, const
   words.resize(kGatherConstants);
   words[3] = needs.glossy;  // the rough lobes alone are gathered
   words[kSharpConstant] = needs.sharp;
-  words.insert(words.end(), {lobes, variant.workgroup, variant.selection, variant.splatSide, variant.seeEnvironment});
+  words.insert(words.end(), {lobes, variant.workgroup, variant.selection, variant.splatSide});
   return words;
 }
 

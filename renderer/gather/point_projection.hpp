@@ -47,7 +47,6 @@ struct GatherVariant {
   enum Selection : uint32_t { byImportance, atRandom, everyPoint };
   Selection selection = byImportance;
   uint32_t splatSide = 0;       ///< [texel] of every splat; 0: as large as what the point stands for
-  bool seeEnvironment = false;  ///< in directions that no point covers
   uint32_t workgroup = 64;      ///< invocations a site, a power of two, at most 128
 };
 

@@ -78,7 +78,7 @@ IndirectTexel correction(Site s, uint key) {
     float scale = total / (float(push.correctionRays) * importance[i]);
     addLight(sum, s, q, truth * scale);
     vec3 middle = microTexel(i, push.microSize);
-    addLight(sum, s, middle, seen(s, i, toWorldOf(s, normalize(middle))).rgb * -scale);
+    addLight(sum, s, middle, seen(i, toWorldOf(s, normalize(middle))).rgb * -scale);
   }
   uint traced = (push.correctionRays + kGroup - 1u - gl_LocalInvocationIndex) / kGroup;
   uint before = atomicAdd(counters[kCounterRays], traced);

@@ -12,7 +12,6 @@
 #include "shaders/lib/scene_bindings.glsl"
 layout(constant_id = 10) const bool kUseSharp = true;
 #include "shaders/lib/lobe_split.glsl"
-#include "shaders/lib/environment.glsl"
 #include "shaders/lib/micro_buffer.glsl"
 #include "shaders/gather/allocation.glsl"
 
@@ -20,7 +19,6 @@ layout(constant_id = 16) const bool kUseGlossySources = true;  // points may hav
 layout(constant_id = 17) const uint kGroup = 64u;
 layout(constant_id = 18) const uint kSelection = 0u;           // kByImportance...
 layout(constant_id = 19) const uint kSplatSide = 0u;           // [texel] of all splats; 0: what they stand for
-layout(constant_id = 20) const bool kSeeEnvironment = false;   // in directions that no point covers
 
 const uint kByImportance = 0u, kAtRandom = 1u, kEveryPoint = 2u;
 const uint kMostTexels = 1024u, kMostProjections = kMostSamples, kMostGroup = 128u;
@@ -217,15 +215,14 @@ void closeHoles() {
   }
 }
 
-// Radiance that texel `i` sees and 1, or 0 where it sees nothing.
-vec4 seen(Site s, uint i, vec3 dirW) {
+// Radiance that texel `i` sees and 1, or 0 where it sees nothing: light of the environment is sampled as direct light.
+vec4 seen(uint i, vec3 dirW) {
   uint word = micro[i];
   bool covered = word != kEmpty;
   uint entry = covered ? projected[kSelection == kEveryPoint ? i : word & kSampleMask] : 0u;
   vec4 radiance = texelFetch(pointRadiance, int(entry));
   if (kUseGlossySources && covered && radiance.w > 0.0) radiance.rgb += lobeRadiance(entry >> 1, -dirW);
-  if (covered) return vec4(radiance.rgb, 1.0);
-  return vec4(kSeeEnvironment && s.valid ? environmentRadiance(dirW) : vec3(0.0), 0.0);
+  return covered ? vec4(radiance.rgb, 1.0) : vec4(0.0);
 }
 
 vec3 toWorldOf(Site s, vec3 w) { return s.t * w.x + s.b * w.y + s.n * w.z; }
@@ -255,7 +252,7 @@ IndirectTexel reduce(Site s) {
   IndirectTexel sum = IndirectTexel(vec3(0.0), 0.0, vec3(0.0), kIndirectSampled);
   float brought = 0.0, factors = 0.0;
   for (uint i = gl_LocalInvocationIndex; i < push.microSize * push.microSize; i += kGroup) {
-    vec3 q = microTexel(i, push.microSize), radiance = seen(s, i, toWorldOf(s, normalize(q))).rgb;
+    vec3 q = microTexel(i, push.microSize), radiance = seen(i, toWorldOf(s, normalize(q))).rgb;
     float factor = addLight(sum, s, q, radiance);
 #ifdef LIMN_GATHER_CORRECT
     importance[i] = factor * luminance(radiance);
@@ -305,7 +302,7 @@ IndirectTexel reduceAll(Site s) {
 void writeResult(Site s, uint entry) {
   uint count = push.microSize * push.microSize;
   for (uint i = gl_LocalInvocationIndex; i < count; i += kGroup)
-    texelsOut[entry * count + i] = seen(s, i, toWorldOf(s, normalize(microTexel(i, push.microSize))));
+    texelsOut[entry * count + i] = seen(i, toWorldOf(s, normalize(microTexel(i, push.microSize))));
 }
 #elif defined(LIMN_GATHER_POINTS)
 void writeLight(Site s, IndirectTexel light) {

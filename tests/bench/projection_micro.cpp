@@ -22,12 +22,12 @@ struct Way {
 };
 
 /// All points first: what the others are measured against.
-const std::array<Way, 6> kWays{{{"all points", {GatherVariant::everyPoint, 0, false, 128}},
+const std::array<Way, 6> kWays{{{"all points", {GatherVariant::everyPoint, 0, 128}},
                                 {"by importance, adaptive splats", {}},
-                                {"at random, adaptive splats", {GatherVariant::atRandom, 0, false, 64}},
-                                {"by importance, splats of 1 texel", {GatherVariant::byImportance, 1, false, 64}},
-                                {"by importance, splats of 2 texels", {GatherVariant::byImportance, 2, false, 64}},
-                                {"by importance, splats of 3 texels", {GatherVariant::byImportance, 3, false, 64}}}};
+                                {"at random, adaptive splats", {GatherVariant::atRandom, 0, 64}},
+                                {"by importance, splats of 1 texel", {GatherVariant::byImportance, 1, 64}},
+                                {"by importance, splats of 2 texels", {GatherVariant::byImportance, 2, 64}},
+                                {"by importance, splats of 3 texels", {GatherVariant::byImportance, 3, 64}}}};
 
 /// A place in the picture, in shares of its width and height from the top left.
 struct NamedPixel {

@@ -125,6 +125,6 @@ class Gatherer {
   bool m_glossy, m_lobes;
 };
 
-constexpr GatherVariant kBruteForce{GatherVariant::everyPoint, 0, false, 128};
+constexpr GatherVariant kBruteForce{GatherVariant::everyPoint, 0, 128};
 
 }  // namespace limn::test

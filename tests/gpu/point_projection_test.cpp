@@ -244,7 +244,7 @@ TEST(PointProjection, LobesOfPointsTurnWithTheShadingNormal) {
 TEST(PointProjection, SameSeedSameBits) {
   Gatherer g(boxPoints(1.0f, 52, colouredBox()), 256, 24.0);
   spreadSites(g, 1.0f, -1.0f);
-  const auto a = g.gather(2), b = g.gather(2), wide = g.gather(2, {GatherVariant::byImportance, 0, false, 32});
+  const auto a = g.gather(2), b = g.gather(2), wide = g.gather(2, {GatherVariant::byImportance, 0, 32});
   EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])), 0);
   g.push.seed = 2;
   EXPECT_NE(std::memcmp(a.data(), g.gather(2).data(), a.size() * sizeof(a[0])), 0);
