@@ -14,7 +14,7 @@ namespace limn::server {
 /// A wait for an estimated error; the renderer knows waits for steps only.
 struct ErrorWait {
   uint32_t seq = 0;
-  float error = 0.0f;          ///< relMSE
+  float error = 0.0f;          ///< relMSE, for the upper end of its interval
   bool asked = false;          ///< the film's hash was asked for
 };
 

@@ -158,9 +158,14 @@ protocol::Status toWire(const Status& status) {
   wire.steps = status.steps;
   wire.meanSamples = status.meanSamples;
   wire.estimatedError = finite(status.estimatedError);
+  if (wire.estimatedError) {
+    wire.errorLow = status.errorLow;
+    wire.errorHigh = finite(status.errorHigh);
+  }
   wire.raysPerSecond = status.raysPerSecond;
   wire.secondsSinceRestart = status.secondsSinceRestart;
   wire.discardedSamples = status.discardedSamples;
+  wire.discardedShare = status.discardedShare;
   wire.editsApplied = status.editsApplied;
   wire.restarts = status.restarts;
   wire.framesPublished = status.framesPublished;

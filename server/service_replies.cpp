@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "renderer/base/clock.hpp"
 #include "server/convert.hpp"
@@ -18,8 +17,6 @@ std::string placeInMessage(std::string place, uint32_t seq, bool batch) {
   if (!batch && place.starts_with(only)) place.erase(0, only.size());
   return "seq " + std::to_string(seq) + (place.empty() ? "" : " ") + place;
 }
-
-std::optional<float> finite(float value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; }
 
 }  // namespace
 
@@ -85,8 +82,9 @@ struct ReplyHandler {
     if (!session) return;
     std::erase_if(session->errorWaits, [&](const ErrorWait& wait) { return wait.seq == reply.to.seq; });
     service.tellWatched();
-    service.send(*session, protocol::Waited{reply.to.seq, reply.steps, {reply.filmHash},
-                                            finite(service.m_replies.status().estimatedError)});
+    const protocol::Status told = toWire(service.m_replies.status());
+    service.send(*session, protocol::Waited{reply.to.seq, reply.steps, {reply.filmHash}, told.estimatedError,
+                                            told.errorLow, told.errorHigh});
   }
 
  private:

@@ -6,6 +6,7 @@ limn_tracing_shader(bench/trace_rays.comp NAME trace_any_alpha DEFINES LIMN_ALPH
 limn_shader(film/resolve.comp)
 limn_shader(film/film_error.comp)
 limn_shader(film/select_pixels.comp)
+limn_shader(film/audit_records.comp)
 limn_tracing_shader(visibility/g_buffer.comp)
 limn_tracing_shader(visibility/gather_sites.comp)
 limn_tracing_shader(techniques/path_tracing.comp)

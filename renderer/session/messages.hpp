@@ -96,7 +96,7 @@ struct FrameInfo {
   float estimatedError = 0.0f;         ///< relMSE, estimate; infinity until it can be told
   float errorLow = 0.0f, errorHigh = 0.0f;  ///< 95 % interval
   float msSinceEdit = 0.0f;            ///< from receipt of the newest applied edit to publication
-  uint64_t discardedSamples = 0;       ///< NaN, infinity
+  uint64_t discardedSamples = 0;       ///< NaN, infinite or negative, since the restart
   std::vector<StageTime> stages;       ///< of this frame alone
   std::vector<Origin> applied;         ///< newest applied seq of every client that has edited
 };
@@ -111,10 +111,13 @@ struct Status {
   Phase phase = Phase::coarse;
   bool idle = false;
   uint32_t steps = 0;
-  float meanSamples = 0.0f, estimatedError = 0.0f, errorHigh = 0.0f;  ///< as FrameInfo's
+  float meanSamples = 0.0f;
+  float estimatedError = 0.0f;         ///< relMSE; infinity until it can be told
+  float errorLow = 0.0f, errorHigh = 0.0f;  ///< 95 % interval
   double raysPerSecond = 0.0;
   double secondsSinceRestart = 0.0;
-  uint64_t discardedSamples = 0;
+  uint64_t discardedSamples = 0;       ///< NaN, infinite or negative, since the restart
+  double discardedShare = 0.0;         ///< of the samples taken since then, 0..1
   uint64_t editsApplied = 0, restarts = 0, framesPublished = 0, quanta = 0;
   uint64_t blocksRebuilt = 0;          ///< BVH blocks that edits and loads had built anew
   uint32_t pipelinesCreated = 0;       ///< since the process began; constant after warm-up

@@ -34,14 +34,17 @@ Result<bool> Session::step() {
 }
 
 Result<void> Session::Impl::work(double seconds) {
+  if (auditIsDue(seconds)) return auditFor(seconds);
   const double begin = nowSeconds();
   auto made = technique->advance(context(), seconds);
   if (!made) return made.error();
   progress = *made;
-  sampledSeconds += nowSeconds() - begin;
+  const double spent = nowSeconds() - begin;
+  sampledSeconds += spent;
+  auditOwed += spent * auditShare() / (1.0 - auditShare());
   newSamples = true;
   ++status.quanta;
-  return {};
+  return made->passFinished ? auditPass() : Result<void>{};
 }
 
 Result<void> Session::runSteps(uint32_t steps) {

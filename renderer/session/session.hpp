@@ -20,6 +20,7 @@ struct SessionConfig {
   uint32_t firstSample = 0;            ///< index of the first sample taken of a pixel: a part of a render split by samples
   uint32_t sampleCount = 0;            ///< samples of every pixel at which it is converged; 0: the technique's own end
   bool allNeeds = false;               ///< everything is at work that any scene may need: what leaving out is measured against
+  uint32_t auditPathsPerPass = 0;      ///< a biased technique's audit after each pass, in place of its share of the time: estimates that can be repeated
   double quantumSeconds = 0.015;       ///< device time between two looks at the mailbox
   double frameSeconds = 0.1;           ///< at rest, the time between two published frames at first; grows as it converges
   double firstFrameSeconds = 0.05;     ///< after an edit, the time in which the first coarse frame should be gathered

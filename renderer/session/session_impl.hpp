@@ -9,6 +9,7 @@
 #include "renderer/session/restart_plan.hpp"
 #include "renderer/session/session.hpp"
 #include "renderer/session/warm_up_scene.hpp"
+#include "renderer/techniques/audit.hpp"
 #include "renderer/techniques/technique.hpp"
 #include "renderer/visibility/scene_tracer.hpp"
 
@@ -25,7 +26,7 @@ struct PendingChanges {
 };
 
 /// What Session is made of. One file a concern: session.cpp the loop, session_edits.cpp what an edit does, session_state.cpp the
-/// derived data, session_publish.cpp pictures and status, session_queries.cpp answers,
+/// derived data, session_publish.cpp pictures and status, session_audit.cpp the error that is told, session_queries.cpp answers,
 /// session_warm_up.cpp pipelines of the techniques that are not in use.
 struct Session::Impl {
   Impl(vk::Device& d, Mailbox& in, FrameSlot& slot, StatusQueue& out) : device(d), mailbox(in), frames(slot), replies(out), mirror(d) {}
@@ -58,10 +59,17 @@ struct Session::Impl {
   bool gridComplete() const;
   Result<void> publish();
   Result<std::shared_ptr<const Frame>> makeFrame();
-  Result<void> estimateError();
   void refreshStatus();
   void listWork();
   Phase phase() const;
+
+  // session_audit.cpp
+  Result<void> restartAudit(bool mayCompile);
+  double auditShare() const;
+  bool auditIsDue(double seconds) const;
+  Result<void> auditFor(double seconds);
+  Result<void> auditPass();
+  Result<void> estimateError();
 
   // session_queries.cpp
   Result<void> handle(const PickRequest& request);
@@ -112,8 +120,12 @@ struct Session::Impl {
   PendingChanges pending;
   Progress progress;
   FilmError error;
+  FilmStatistics::Means means;
+  Audit audit;                          ///< of biased techniques; prepared when the first is
+  double auditOwed = 0.0;               ///< [s] of its share of the time, not had yet
+  double auditedSeconds = 0.0;          ///< device time since the restart
   double restartedAt = 0.0, editReceivedAt = 0.0, publishedAt = 0.0;
-  uint64_t raysAtRestart = 0;
+  uint64_t raysAtRestart = 0, discardedAtRestart = 0;
   double sampledSeconds = 0.0;          ///< device time since the restart
   double sampledAtFrame = 0.0;          ///< of which the last picture knew
   uint32_t publishedPasses = 0;         ///< of the last picture of this state

@@ -51,15 +51,6 @@ Result<void> Session::Impl::publish() {
   return {};
 }
 
-// The halves of a biased film agree about its bias: of that nothing is told rather than too little.
-Result<void> Session::Impl::estimateError() {
-  auto estimate = statistics->estimate(device, *film);
-  if (!estimate) return estimate.error();
-  error = *estimate;
-  if (technique->info().biased) error.withhold();
-  return {};
-}
-
 Result<std::shared_ptr<const Frame>> Session::Impl::makeFrame() {
   const double begin = nowSeconds();
   auto rgba = resolver->resolve(device, *film, resolve, progress.passes > 0 ? 0 : progress.fillStride, technique->indirect());
@@ -76,12 +67,12 @@ Result<std::shared_ptr<const Frame>> Session::Impl::makeFrame() {
   info.phase = phase();
   info.steps = progress.passes;
   info.gatheredShare = float(progress.gatheredShare);
-  info.meanSamples = progress.passes > 1 ? float(error.meanSamples) : float(progress.gatheredShare);
+  info.meanSamples = progress.passes > 1 ? float(means.samples) : float(progress.gatheredShare);
   info.estimatedError = float(error.relMse);
   info.errorLow = float(error.low);
   info.errorHigh = float(error.high);
   info.msSinceEdit = editReceivedAt > 0.0 ? float((end - editReceivedAt) * 1e3) : 0.0f;
-  info.discardedSamples = technique->discardedSamples();
+  info.discardedSamples = technique->discardedSamples() - discardedAtRestart;
   info.stages = {{"sample", float((sampledSeconds - sampledAtFrame) * 1e3)}, {"resolve", float((end - begin) * 1e3)}};
   sampledAtFrame = sampledSeconds;
   for (const auto& [client, seq] : appliedSeq) info.applied.push_back({client, seq});
@@ -94,6 +85,7 @@ void Session::Impl::listWork() {
   status.ran.clear();
   status.leftOut.clear();
   for (const PassUse& pass : technique->passes()) (pass.ran ? status.ran : status.leftOut).push_back(pass.name);
+  if (technique->info().biased) (auditShare() > 0.0 ? status.ran : status.leftOut).emplace_back("audit pixels");
   status.ran.emplace_back(config.allNeeds ? "everything, needed or not" : kPipelines[uint32_t(technique->pipelines())]);
   for (const auto& [name, flag] : sceneNeedFlags())
     (needs.*flag ? status.ran : status.leftOut).push_back("scene: " + std::string(name));
@@ -103,12 +95,15 @@ void Session::Impl::refreshStatus() {
   status.phase = phase();
   status.idle = idle();
   status.steps = progress.passes;
-  status.meanSamples = float(error.meanSamples);
+  status.meanSamples = float(means.samples);
   status.estimatedError = float(error.relMse);
+  status.errorLow = float(error.low);
   status.errorHigh = float(error.high);
   status.secondsSinceRestart = nowSeconds() - restartedAt;
   status.raysPerSecond = sampledSeconds > 0.0 ? double(technique->raysTraced() - raysAtRestart) / sampledSeconds : 0.0;
-  status.discardedSamples = technique->discardedSamples();
+  status.discardedSamples = technique->discardedSamples() - discardedAtRestart;
+  const double taken = means.samples * film->pixelCount() + double(status.discardedSamples);
+  status.discardedShare = taken > 0.0 ? double(status.discardedSamples) / taken : 0.0;
   status.pipelinesCreated = device.pipelineStats().created;
   status.technique = technique->info().name;
   status.device = device.info().name;
@@ -116,6 +111,7 @@ void Session::Impl::refreshStatus() {
   status.memory.assign(device.memory().byOwner().begin(), device.memory().byOwner().end());
   status.stages = stages;
   status.stages.push_back({"sample", float(sampledSeconds * 1e3)});
+  if (auditShare() > 0.0) status.stages.push_back({"audit", float(auditedSeconds * 1e3)});
   for (StageTime& stage : technique->stages()) status.stages.push_back(std::move(stage));
   status.figures = technique->figures();
   replies.setStatus(status);

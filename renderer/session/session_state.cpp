@@ -158,6 +158,7 @@ std::vector<vk::Binding> Session::Impl::pickBindings() const {
 Result<void> Session::Impl::restartFilm(CostClass cost) {
   if (auto done = technique->prepare(context(), needs, cost >= CostClass::reload); !done) return done;
   if (auto done = technique->restart(context(), cost); !done) return done;
+  if (auto done = restartAudit(cost >= CostClass::reload); !done) return done;
   if (!pickPass) {
     const auto all = pickBindings();
     auto pass = gpu::Pass::create(device, "g_buffer", all, sizeof(shared::GBufferPush));
@@ -170,9 +171,10 @@ Result<void> Session::Impl::restartFilm(CostClass cost) {
   progress = {};
   progress.fillStride = 8;
   error = {};
-  error.relMse = error.high = std::numeric_limits<double>::infinity();
+  means = {};
   restartedAt = nowSeconds();
   raysAtRestart = technique->raysTraced();
+  discardedAtRestart = technique->discardedSamples();
   sampledSeconds = sampledAtFrame = 0.0;
   frameOfState = newSamples = false;
   publishedPasses = 0;

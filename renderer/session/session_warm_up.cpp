@@ -26,7 +26,9 @@ Result<void> Session::Impl::warmUpOnePipeline() {
   WarmUpScene& w = *warmUpScene;
   const TechniqueContext standIn{device, w.description, w.mirror, w.tracer, camera, *w.film, *statistics};
   const vk::PipelineAllowance allowance(device, 1);
-  auto done = keptTechnique(coldTechniques.back()).prepare(standIn, w.needs, true);
+  Technique& cold = keptTechnique(coldTechniques.back());
+  auto done = cold.prepare(standIn, w.needs, true);
+  if (done && cold.info().biased && !technique->info().biased) done = audit.prepare(standIn, w.needs, true);
   warmUpSeconds += nowSeconds() - begin;
   if (!done && done.error().code == vk::PipelineAllowance::kSpent) return {};  // the rest in later turns
   if (!done && done.error().code == "device-lost") return done;

@@ -21,11 +21,6 @@ constexpr double kInitialPathsPerSecond = 2e5;  // of a slow two-core machine; t
 /// (measured), and four paths through a large scene may take a fifth of that.
 uint32_t samplesOfPass(uint32_t pass) { return pass < 2 ? 1 : pass < 3 ? 2 : 4; }
 
-uint32_t workgroups(uint32_t entries) {
-  const uint32_t turns = (entries + kWorkgroup * kDealt - 1) / (kWorkgroup * kDealt);
-  return turns * kDealt;
-}
-
 class PathTracing final : public Technique {
  public:
   const TechniqueInfo& info() const override { return pathTracingInfo(); }
@@ -146,9 +141,10 @@ Result<void> PathTracing::beginPass(const TechniqueContext& context) {
   m_passSamples = std::min(samplesOfPass(m_pass), sampleLimit(context) - m_samplesDone);
   if (!m_adaptive || m_samplesDone < m_minSamples) return {};
   const double begin = nowSeconds();
-  auto error = context.statistics.estimate(context.device, context.film);
-  if (!error) return error.error();
-  auto active = context.statistics.selectPixels(context.device, context.film, m_active, m_minSamples, m_noiseThreshold, error->meanValue);
+  auto means = context.statistics.means(context.device, context.film);
+  if (!means) return means.error();
+  auto active = context.statistics.selectPixels(context.device, context.film, m_active, m_minSamples, m_noiseThreshold,
+                                                means->radiance);
   if (!active) return active.error();
   m_passPixels = *active;
   m_selectSeconds += nowSeconds() - begin;
@@ -158,11 +154,11 @@ Result<void> PathTracing::beginPass(const TechniqueContext& context) {
 Result<void> PathTracing::dispatch(const TechniqueContext& context, uint32_t count) {
   const bool adaptive = m_adaptive && m_samplesDone >= m_minSamples;
   const shared::PathTracingPush push{m_cursor,     count,        context.firstSample + m_samplesDone, m_passSamples,
-                                     context.seed, m_maxBounces, m_rouletteStart};
+                                     context.seed, m_maxBounces, m_rouletteStart, 0};
   const auto all = bindings(context, adaptive ? m_active : m_order);
   const double begin = nowSeconds();
   auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
-    m_trace->record(r, all, push, workgroups(count));
+    m_trace->record(r, all, push, pathTracingWorkgroups(count));
   });
   if (!done) return done;
   const double seconds = nowSeconds() - begin;
@@ -238,6 +234,11 @@ const TechniqueInfo& pathTracingInfo() {
        {"minSamples", "Samples before a pixel may stop", "samples", ParameterType::integer, 4, 4096, 16, CostClass::regather},
        {"maxSamples", "Samples at which every pixel stops", "samples", ParameterType::integer, 1, 1048576, 4096, CostClass::regather}}};
   return kInfo;
+}
+
+uint32_t pathTracingWorkgroups(uint32_t entries) {
+  const uint32_t turns = (entries + kWorkgroup * kDealt - 1) / (kWorkgroup * kDealt);
+  return turns * kDealt;
 }
 
 std::unique_ptr<Technique> makePathTracing() { return std::make_unique<PathTracing>(); }

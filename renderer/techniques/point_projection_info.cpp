@@ -1,3 +1,4 @@
+#include "renderer/techniques/audit.hpp"
 #include "renderer/techniques/point_projection.hpp"
 
 namespace limn {
@@ -23,7 +24,8 @@ const TechniqueInfo& pointProjectionInfo() {
        {"threshold", "Incoherence over which a pixel of the first level is gathered; doubles a level", "1", real, 0.0, 10.0, 0.3, regather},
        {"lambda", "Weight of radiance against geometry in the coherence metric", "1", real, 0.0, 100.0, 8.0, regather},
        {"filterSize", "Side of the joint bilateral filter; 1 is none", "pixels", integer, 1, 7, 7, regather},
-       {"maxSamples", "Subpixel samples at which the picture is done", "samples", integer, 1, 65536, 1024, regather}}};
+       {"maxSamples", "Subpixel samples at which the picture is done", "samples", integer, 1, 65536, 1024, regather},
+       auditShareInfo()}};
   return kInfo;
 }
 

@@ -5,6 +5,7 @@
 
 #include "renderer/base/check.hpp"
 #include "renderer/cache/point_light.hpp"
+#include "renderer/techniques/audit.hpp"
 #include "renderer/techniques/path_tracing.hpp"
 #include "renderer/techniques/point_projection_impl.hpp"
 #include "shaders/shared/film_shared.h"
@@ -28,6 +29,13 @@ double valueOf(const TechniqueInfo& info, const std::string& name, const Picture
   for (const auto& [given, number] : settings.parameters)
     if (given == name) value = number;
   return value;
+}
+
+// A film of the pixels it keeps samples of, which they are, and what is made of them.
+void addAudit(vk::MemoryUse& device, uint32_t width, uint32_t height) {
+  const uint64_t entries = auditEntries(width, height);
+  device.add("film", kFilmPlanes * entries * sizeof(glm::vec4));
+  device.add("audit", entries * (sizeof(shared::AuditRecord) + kWord) + kCounterBytes);
 }
 
 // The order of all pixels, and the list of the active ones.
@@ -74,6 +82,7 @@ void addPointProjection(vk::MemoryUse& device, const Scene& scene, std::span<con
   const uint64_t side = std::bit_ceil(std::max<uint64_t>({settings.width, settings.height, 2}));
   const uint64_t groups = (side * side + shared::kPlacementGroup - 1) / shared::kPlacementGroup;
   device.add("placement", (2 * groups + 2) * kWord);
+  addAudit(device, settings.width, settings.height);
 }
 
 }  // namespace
@@ -81,7 +90,7 @@ void addPointProjection(vk::MemoryUse& device, const Scene& scene, std::span<con
 void addFilmMemory(vk::MemoryUse& device, uint32_t width, uint32_t height) {
   const uint64_t pixels = uint64_t(width) * height;
   const uint64_t tiles = uint64_t((width + kTile - 1) / kTile) * ((height + kTile - 1) / kTile);
-  const uint64_t statistics = tiles * (sizeof(shared::TileError) + kWord) + kWord;
+  const uint64_t statistics = tiles * (sizeof(shared::TileError) + kWord) + kWord + shared::kErrorBins * kWord;
   const uint64_t display = pixels * kWord + sizeof(shared::IndirectTexel);
   device.add("film", kFilmPlanes * pixels * sizeof(glm::vec4) + statistics + display);
 }

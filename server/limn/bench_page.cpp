@@ -9,6 +9,7 @@
 namespace limn::bench {
 namespace {
 
+constexpr double kMostDiscarded = 1e-5;  // share of all samples
 constexpr const char* kStyle =
     "body{font:15px/1.45 sans-serif;max-width:76rem;margin:2rem auto;padding:0 1rem;color:#1c1c1c;background:#fff}"
     "h2{margin-top:2.5rem;border-bottom:1px solid #ccc}table{border-collapse:collapse;margin:.8rem 0}"
@@ -105,6 +106,12 @@ std::string joined(const std::vector<std::string>& words) {
   return text.empty() ? "nothing" : text;
 }
 
+std::string discardedText(const Status& status) {
+  const std::string share = ", " + number(status.discardedShare) + " of all";
+  return marked("Samples discarded: " + std::to_string(status.discardedSamples) + share + ".",
+                status.discardedShare > kMostDiscarded);
+}
+
 /// What ran and what was left out, once a technique.
 std::string needsText(const SceneResult& scene) {
   std::string text;
@@ -113,8 +120,7 @@ std::string needsText(const SceneResult& scene) {
     const auto run = std::find_if(scene.runs.begin(), scene.runs.end(), of);
     if (run == scene.runs.end()) continue;
     text += "<p>" + escaped(curve.technique) + " ran " + joined(run->status.ran) + "; left out " +
-            joined(run->status.leftOut) + ". Samples discarded: " + std::to_string(run->status.discardedSamples) +
-            ".</p>\n";
+            joined(run->status.leftOut) + ". " + discardedText(run->status) + "</p>\n";
   }
   return text;
 }

@@ -28,7 +28,7 @@ std::string csvLine(const std::vector<std::string>& fields) {
 const std::vector<std::string> kColumns = {
     "scene",     "technique", "seed", "budget", "seconds",  "steps",    "samples",       "gatheredShare",    "relMse",
     "relMseAll", "estimate",  "low",  "high",   "nonFinite", "filmHash", "raysPerSecond", "discardedSamples",
-    "stepSeconds", "stepSecondsAllNeeds"};
+    "discardedShare", "stepSeconds", "stepSecondsAllNeeds"};
 
 /// Of the ablation; empty where it was not measured.
 std::string stepSeconds(const SceneResult& scene, const Run& run, Ablation::Cost Ablation::*cost) {
@@ -42,8 +42,8 @@ std::vector<std::string> rowOf(const SceneResult& scene, const Run& run, const B
           std::to_string(c.steps), csvNumber(c.samples), csvNumber(c.gatheredShare), csvNumber(c.relMse),
           csvNumber(c.relMseAll), csvNumber(c.estimate), csvNumber(c.low), csvNumber(c.high),
           std::to_string(c.nonFinite), hexText(c.filmHash), csvNumber(run.status.raysPerSecond),
-          std::to_string(run.status.discardedSamples), stepSeconds(scene, run, &Ablation::needed),
-          stepSeconds(scene, run, &Ablation::all)};
+          std::to_string(run.status.discardedSamples), csvNumber(run.status.discardedShare),
+          stepSeconds(scene, run, &Ablation::needed), stepSeconds(scene, run, &Ablation::all)};
 }
 
 /// Another renderer's picture has no run of ours.
@@ -130,6 +130,7 @@ void writeRun(JsonWriter& json, const Run& run) {
   json.field("warmUpSeconds", run.warmUpSeconds);
   json.field("raysPerSecond", run.status.raysPerSecond);
   json.field("discardedSamples", run.status.discardedSamples);
+  json.field("discardedShare", run.status.discardedShare);
   json.field("memory", run.status.memory);
   json.field("hostMemory", run.status.hostMemory);
   json.field("ran", run.status.ran);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "renderer/base/clock.hpp"
@@ -84,7 +85,8 @@ class Render {
     const Result<Status> status = m_session->status();
     if (!status) return status.error();
     m_stats.status = *status;
-    return PassState{status->steps, status->estimatedError, status->errorHigh, status->phase == Phase::converged};
+    return PassState{status->steps, status->estimatedError, status->errorLow, status->errorHigh,
+                     status->phase == Phase::converged};
   }
 
   Result<FilmImage> film(double seconds) {
@@ -122,14 +124,22 @@ class Render {
   }
 
   Result<void> report() {
-    std::printf("%s: %ux%u, samples %s in %.2f s, estimated relMSE %.3g\n", m_options.output.c_str(), m_options.width,
-                m_options.height, sampleRangeText(m_stats.samples).c_str(), m_stats.outcome.seconds,
-                m_stats.outcome.state.error);
+    std::printf("%s: %ux%u, samples %s in %.2f s, %s\n", m_options.output.c_str(), m_options.width, m_options.height,
+                sampleRangeText(m_stats.samples).c_str(), m_stats.outcome.seconds, errorText().c_str());
     for (const LoadReport::Item& item : m_stats.report.unsupported)
       std::fprintf(stderr, "limn render: not supported: %s: %s\n", item.feature.c_str(), item.note.c_str());
     if (m_options.stats.empty()) return {};
     const std::string json = renderStatsJson(m_stats);
     return writeFileAtomically(m_options.stats, {reinterpret_cast<const uint8_t*>(json.data()), json.size()});
+  }
+
+  std::string errorText() const {
+    const PassState& state = m_stats.outcome.state;
+    if (!std::isfinite(state.errorHigh)) return "error not known";
+    char text[96];
+    std::snprintf(text, sizeof text, "estimated relMSE %.3g (%.3g to %.3g)", state.error, state.errorLow,
+                  state.errorHigh);
+    return text;
   }
 
   const RenderOptions& m_options;

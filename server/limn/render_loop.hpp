@@ -10,7 +10,7 @@ namespace limn {
 struct PassState {
   uint32_t steps = 0;                  ///< passes done
   double error = 0.0;                  ///< estimated relMSE
-  double errorHigh = 0.0;              ///< upper end of its 95 % interval
+  double errorLow = 0.0, errorHigh = 0.0;  ///< its 95 % interval
   bool converged = false;
 };
 

@@ -141,7 +141,7 @@ CommandSpec renderSpec() {
            {"time", "SECONDS", "stop at the first end of a pass so long after the first step", false, "stop"},
            {"steps", "N", "stop after so many passes", false, "stop"},
            {"spp", "N", "stop after so many samples of every pixel (default: 64)", false, "stop"},
-           {"until-error", "E", "stop when the upper end of the estimated relMSE is this small", false, "stop"},
+           {"until-error", "E", "stop when the upper end of relMSE's 95 % interval is this small", false, "stop"},
            {"samples", "A:B", "only the samples A <= i < B of every pixel: a part for limn merge"},
            {"checkpoints", "T1,T2,...", "also write FILE.<t>s.exr at those times"},
            {"aov", "LIST", "layers beside beauty: direct,indirect,albedo,normal,depth,samples,error (default: all)"},

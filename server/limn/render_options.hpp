@@ -15,7 +15,7 @@ namespace limn {
 struct StopRule {
   std::optional<double> seconds;       ///< from the first step
   std::optional<uint32_t> steps;       ///< whole passes
-  std::optional<double> error;         ///< estimated relMSE
+  std::optional<double> error;         ///< upper end of the 95 % interval of relMSE
 };
 
 struct CheckpointRequest {

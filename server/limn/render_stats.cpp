@@ -47,6 +47,8 @@ void writeCheckpoints(protocol::JsonWriter& json, const RenderStats& stats) {
     json.field("seconds", taken.seconds);
     json.field("steps", taken.state.steps);
     json.field("estimatedError", taken.state.error);
+    json.field("estimatedErrorLow", taken.state.errorLow);
+    json.field("estimatedErrorHigh", taken.state.errorHigh);
     json.field("file", checkpointFile(stats.output, taken.request.text));
     json.endObject();
   }
@@ -78,10 +80,11 @@ void writeQuality(protocol::JsonWriter& json, const RenderStats& stats) {
   json.field("samples", sampleRangeText(stats.samples));
   json.field("meanSamples", stats.status.meanSamples);
   json.field("discardedSamples", stats.status.discardedSamples);
+  json.field("discardedShare", stats.status.discardedShare);
   json.field("converged", stats.outcome.state.converged);
   json.field("estimatedError", stats.outcome.state.error);
-  json.field("estimatedErrorLow", stats.frame.errorLow);
-  json.field("estimatedErrorHigh", stats.frame.errorHigh);
+  json.field("estimatedErrorLow", stats.outcome.state.errorLow);
+  json.field("estimatedErrorHigh", stats.outcome.state.errorHigh);
 }
 
 }  // namespace

@@ -36,7 +36,10 @@ std::string describe(const ServerMessage& answer) {
     return "node " + std::to_string(picked->node.value_or(0)) + number(" at %.4g m", picked->distance.value_or(0.0));
   }
   if (const auto* waited = std::get_if<Waited>(&answer)) {
-    const std::string error = waited->estimatedError ? number(", estimated relMSE %.3g", *waited->estimatedError) : "";
+    const std::string error = waited->estimatedError && waited->errorLow && waited->errorHigh
+                                  ? number(", estimated relMSE %.3g", *waited->estimatedError) +
+                                        number(" (%.3g", *waited->errorLow) + number(" to %.3g)", *waited->errorHigh)
+                                  : "";
     return std::to_string(waited->steps) + " steps, film " + hexText(waited->filmHash.value) + error;
   }
   return std::string(opOf(answer));
@@ -202,7 +205,7 @@ Command sendCommand() {
            "Sends the messages of a script to limnd, one JSON object a line, each after the answer to the one before.",
            {"URL", "SCRIPT.jsonl"},
            {{"save", "DIR", "keep frames and saved files there"},
-            {"wait-error", "E", "after the last message wait until the upper end of the estimated relMSE is this small"},
+            {"wait-error", "E", "after the last message wait until the upper end of relMSE's 95 % interval is this small"},
             {"timeout", "SECONDS", "give up when an answer takes longer (default: 60)"}}},
           run};
 }

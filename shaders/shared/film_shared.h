@@ -19,8 +19,26 @@ struct PathTracingPush {
   uint seed;
   uint maxBounces;    // indirect bounces; 0: direct light only
   uint rouletteStart; // bounces before Russian roulette
+  uint byEntry;       // 0: the film holds every pixel; 1: it holds the entries of the list
 };
-LIMN_ASSERT_SIZE(PathTracingPush, 28);
+LIMN_ASSERT_SIZE(PathTracingPush, 32);
+
+// What an audit knows of a pixel: what is displayed there, and two independent means of unbiased samples.
+struct AuditRecord {
+  vec3 shown;      // radiance of the film [W/(sr m^2)]
+  float shownCount;
+  vec3 even;       // radiance, mean of even samples
+  float evenCount;
+  vec3 odd;        // radiance, mean of odd samples
+  float oddCount;
+  float squares;   // of the samples' luminance, around its mean, summed
+};
+LIMN_ASSERT_SIZE(AuditRecord, 52);
+
+struct AuditPush {
+  uint entryCount;  // of the list
+};
+LIMN_ASSERT_SIZE(AuditPush, 4);
 
 LIMN_CONST_UINT(kViewBeauty, 0u);
 LIMN_CONST_UINT(kViewDirect, 1u);
@@ -44,12 +62,26 @@ LIMN_ASSERT_SIZE(ResolvePush, 24);
 
 // Film error reduction: one record for every 16x16 tile.
 struct TileError {
-  float luminanceSum;  // of the mean, all channels
-  float errorSum;      // of the relative squared error of the mean
-  float pixels;
+  float radianceSum;  // of the mean, channels averaged
   float samples;
+  float errorSum;     // of the relative squared errors of the means, a value a channel
+  float squareSum;    // of their squares
 };
 LIMN_ASSERT_SIZE(TileError, 16);
+
+// Relative squared errors by size: bin (log2(value) + kErrorLeastOctave) * kErrorBinsPerOctave.
+LIMN_CONST_UINT(kErrorBins, 640u);
+LIMN_CONST_UINT(kErrorBinsPerOctave, 8u);
+LIMN_CONST_UINT(kErrorLeastOctave, 40u);
+
+struct FilmErrorPush {
+  uint width;          // [pixel]
+  uint height;         // [pixel]
+  uint stage;          // 0: mean, 1: sizes, 2: sums
+  uint largestBin;     // values in later bins are left out of the sums
+  float meanRadiance;  // of the picture, channels averaged
+};
+LIMN_ASSERT_SIZE(FilmErrorPush, 20);
 
 struct SelectPush {
   uint width;

@@ -36,7 +36,8 @@ void main() {
   uint discarded = 0u;
   if (entry < push.entryCount) {
     uint pixel = pixelList[push.firstEntry + entry];
-    FilmPixel film = readFilm(pixel);
+    uint place = push.byEntry != 0u ? push.firstEntry + entry : pixel;
+    FilmPixel film = readFilm(place);
     uint taken = 0u;
     Path p = startPath(pixel, push.firstSample);
     while (true) {
@@ -46,7 +47,7 @@ void main() {
       if (++taken == push.sampleCount) break;
       p = startPath(pixel, push.firstSample + taken);
     }
-    writeFilm(pixel, film);
+    writeFilm(place, film);
   }
   if (traceCount > 0u) {
     uint before = atomicAdd(counters[kCounterRays], traceCount);

@@ -19,7 +19,10 @@ struct Structs {
   shared::CameraData cameraData[2];
   shared::PathTracingPush pathTracingPush[2];
   shared::ResolvePush resolvePush[2];
+  shared::AuditRecord auditRecord[2];
+  shared::AuditPush auditPush[2];
   shared::TileError tileError[2];
+  shared::FilmErrorPush filmErrorPush[2];
   shared::SelectPush selectPush[2];
   shared::GBufferTexel gBufferTexel[2];
   shared::GBufferPush gBufferPush[2];
@@ -66,11 +69,17 @@ void fillScene(Filler& fill, Structs& s) {
 
 void fillFilm(Filler& fill, Structs& s) {
   auto& p = s.pathTracingPush[1];
-  fill(sizeof p, p.firstEntry, p.entryCount, p.firstSample, p.sampleCount, p.seed, p.maxBounces, p.rouletteStart);
+  fill(sizeof p, p.firstEntry, p.entryCount, p.firstSample, p.sampleCount, p.seed, p.maxBounces, p.rouletteStart,
+       p.byEntry);
   auto& r = s.resolvePush[1];
   fill(sizeof r, r.width, r.height, r.stride, r.toneMap, r.exposure, r.view);
+  auto& a = s.auditRecord[1];
+  fill(sizeof a, a.shown, a.shownCount, a.even, a.evenCount, a.odd, a.oddCount, a.squares);
+  fill(sizeof s.auditPush[1], s.auditPush[1].entryCount);
   auto& e = s.tileError[1];
-  fill(sizeof e, e.luminanceSum, e.errorSum, e.pixels, e.samples);
+  fill(sizeof e, e.radianceSum, e.samples, e.errorSum, e.squareSum);
+  auto& f = s.filmErrorPush[1];
+  fill(sizeof f, f.width, f.height, f.stage, f.largestBin, f.meanRadiance);
   auto& q = s.selectPush[1];
   fill(sizeof q, q.width, q.height, q.minSamples, q.tileCount, q.threshold, q.stage, q.meanLuminance);
   auto& g = s.gBufferTexel[1];

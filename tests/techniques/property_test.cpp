@@ -86,6 +86,7 @@ Edit pointProjectionEdit(Dice& dice) {
   if (dice.chance(4)) e.parameters.push_back({"clusters", dice.chance(2) ? 64 : 256});
   if (dice.chance(4)) e.parameters.push_back({"startGrid", 4u << dice.below(3)});
   if (dice.chance(4)) e.parameters.push_back({"filterSize", 1 + 2 * dice.below(4)});
+  if (dice.chance(4)) e.parameters.push_back({"auditShare", dice.chance(2) ? 0.0 : 0.5});
   return e;
 }
 

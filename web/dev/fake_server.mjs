@@ -257,6 +257,7 @@ class Client {
       raysPerSecond: idle ? 0 : 3.2e6,
       secondsSinceRestart: (Date.now() - editedMs) / 1000,
       discardedSamples: 0,
+      discardedShare: 0,
       editsApplied: edits,
       restarts,
       framesPublished: this.frameId,

@@ -17,7 +17,10 @@ layout(binding = 0, scalar) readonly buffer Structs {
   CameraData cameraData[2];
   PathTracingPush pathTracingPush[2];
   ResolvePush resolvePush[2];
+  AuditRecord auditRecord[2];
+  AuditPush auditPush[2];
   TileError tileError[2];
+  FilmErrorPush filmErrorPush[2];
   SelectPush selectPush[2];
   GBufferTexel gBufferTexel[2];
   GBufferPush gBufferPush[2];
@@ -79,11 +82,16 @@ void emitScene() {
 void emitFilm() {
   PathTracingPush p = pathTracingPush[1];
   emit(p.firstEntry); emit(p.entryCount); emit(p.firstSample); emit(p.sampleCount); emit(p.seed); emit(p.maxBounces);
-  emit(p.rouletteStart);
+  emit(p.rouletteStart); emit(p.byEntry);
   ResolvePush r = resolvePush[1];
   emit(r.width); emit(r.height); emit(r.stride); emit(r.toneMap); emit(r.exposure); emit(r.view);
+  AuditRecord a = auditRecord[1];
+  emit(a.shown); emit(a.shownCount); emit(a.even); emit(a.evenCount); emit(a.odd); emit(a.oddCount); emit(a.squares);
+  emit(auditPush[1].entryCount);
   TileError e = tileError[1];
-  emit(e.luminanceSum); emit(e.errorSum); emit(e.pixels); emit(e.samples);
+  emit(e.radianceSum); emit(e.samples); emit(e.errorSum); emit(e.squareSum);
+  FilmErrorPush f = filmErrorPush[1];
+  emit(f.width); emit(f.height); emit(f.stage); emit(f.largestBin); emit(f.meanRadiance);
   SelectPush s = selectPush[1];
   emit(s.width);
   emit(s.height);

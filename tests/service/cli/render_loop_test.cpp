@@ -3,13 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace limn {
 namespace {
 
 using ::testing::DoubleEq;
 using ::testing::ElementsAre;
 
-/// A renderer whose passes take a second each of a clock of our own, and whose error is 1/steps, or up to twice that.
+/// A renderer whose passes take a second each of a clock of our own, and whose error is 1/steps, known to a fifth.
 struct FakeRender {
   double clock = 100.0, passSeconds = 1.0, checkpointSeconds = 5.0;
   uint32_t steps = 0, convergesAt = 1000, failsAt = 1000;
@@ -22,7 +24,7 @@ struct FakeRender {
                 ++steps;
                 clock += passSeconds;
               }
-              return PassState{steps, 1.0 / steps, 2.0 / steps, steps == convergesAt};
+              return PassState{steps, 1.0 / steps, 0.8 / steps, 1.2 / steps, steps == convergesAt};
             },
             .takeCheckpoint = [this](const CheckpointTaken& checkpoint) -> Result<void> {
               taken.push_back(checkpoint.request.text + "@" + std::to_string(checkpoint.state.steps));
@@ -52,11 +54,23 @@ TEST(RenderLoop, StopsAtTheSteps) {
   EXPECT_EQ(renderUntil({{}, 7, {}}, {}, fake.hooks())->state.steps, 7u);
 }
 
-TEST(RenderLoop, StopsAtTheUpperEndOfTheError) {
+TEST(RenderLoop, StopsWhenTheUpperEndOfTheIntervalIsAtTheError) {
   FakeRender fake;
   const RenderOutcome outcome = renderUntil({{}, {}, 0.2}, {}, fake.hooks()).value();
-  EXPECT_EQ(outcome.state.steps, 10u);
-  EXPECT_DOUBLE_EQ(outcome.state.error, 0.1);
+  EXPECT_EQ(outcome.state.steps, 6u);
+  EXPECT_DOUBLE_EQ(outcome.state.errorHigh, 1.2 / 6.0);
+}
+
+TEST(RenderLoop, AnErrorThatIsNotKnownStopsNothing) {
+  FakeRender fake;
+  fake.convergesAt = 7;
+  RenderHooks hooks = fake.hooks();
+  hooks.pass = [pass = hooks.pass]() -> Result<PassState> {
+    Result<PassState> state = pass();
+    state->errorHigh = std::numeric_limits<double>::infinity();
+    return state;
+  };
+  EXPECT_EQ(renderUntil({{}, {}, 1e6}, {}, hooks)->state.steps, 7u);
 }
 
 TEST(RenderLoop, ConvergenceEndsEveryRule) {
@@ -72,7 +86,7 @@ TEST(RenderLoop, ConvergenceEndsEveryRule) {
 TEST(RenderLoop, ARendererThatMakesNoMorePassesEndsIt) {
   FakeRender fake;
   RenderHooks hooks = fake.hooks();
-  hooks.pass = [] { return PassState{2, 0.5, 0.5, false}; };
+  hooks.pass = [] { return PassState{2, 0.5, 0.5, 0.5, false}; };
   EXPECT_EQ(renderUntil({}, {}, hooks)->state.steps, 2u);
 }
 

@@ -3,7 +3,7 @@ import type { Model } from '../state/model';
 import type { Statistics } from '../state/statistics';
 import { nowMs } from '../clock';
 import { h, setText } from '../ui/dom';
-import { formatBytes, formatCount, formatError, formatMilliseconds, formatNumber } from '../ui/format';
+import { formatBytes, formatCount, formatInterval, formatMilliseconds, formatNumber } from '../ui/format';
 import { ErrorPlot } from '../ui/plot';
 
 const kRows = [
@@ -20,6 +20,8 @@ const kRows = [
   'Discarded samples',
 ] as const;
 type Row = (typeof kRows)[number];
+
+const kMostDiscarded = 1e-5; // share of samples over which something is wrong
 
 /** Figures of the picture and of the way that it came, redrawn at most four times a second. */
 export class StatsPanel {
@@ -84,13 +86,7 @@ export class StatsPanel {
     this.set('Samples per pixel', formatNumber(header.meanSamples, 4));
     this.set('Steps', formatCount(header.steps));
     this.set('Pixels gathered', `${formatNumber(header.gatheredShare * 100, 3)} %`);
-    const interval = Number.isFinite(header.errorHigh)
-      ? ` (${formatError(header.errorLow)}–${formatError(header.errorHigh)})`
-      : '';
-    this.set(
-      'Estimated error',
-      Number.isFinite(header.estimatedError) ? formatError(header.estimatedError) + interval : 'not known yet',
-    );
+    this.set('Estimated error', formatInterval(header.estimatedError, header.errorLow, header.errorHigh));
   }
 
   private showTransport(header: FrameHeader | undefined): void {
@@ -112,7 +108,9 @@ export class StatsPanel {
 
   private showStatus(status: Status): void {
     this.set('Rays', status.idle ? 'at rest' : `${formatNumber(status.raysPerSecond / 1e6, 3)} M/s`);
-    this.set('Discarded samples', formatCount(status.discardedSamples));
+    const share = `${formatNumber(status.discardedShare, 2)} of all`;
+    this.set('Discarded samples', `${formatCount(status.discardedSamples)}, ${share}`);
+    this.values.get('Discarded samples')?.classList.toggle('bad', status.discardedShare > kMostDiscarded);
     setText(this.ran, status.ran.length > 0 ? `Ran: ${status.ran.join(', ')}` : '');
     setText(this.leftOut, status.leftOut.length > 0 ? `Left out: ${status.leftOut.join(', ')}` : '');
     const memory = Object.entries(status.memory).map(([owner, bytes]) => `${owner} ${formatBytes(bytes)}`);

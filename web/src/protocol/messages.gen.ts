@@ -364,7 +364,7 @@ export interface Wait {
   op: "wait";
   seq: number;  /** rises from message to message of a client */
   steps?: number;  /** passes since the last restart */
-  error?: number;  /** upper end of the estimated relMSE at or below this */
+  error?: number;  /** upper end of the 95 % interval of relMSE at or below this */
 }
 
 /** The client will close. Answered by bye, then close 1000. */
@@ -398,9 +398,12 @@ export interface Status {
   steps: number;  /** passes since the restart */
   meanSamples: number;  /** per pixel */
   estimatedError?: number;  /** relMSE; absent until it can be told */
+  errorLow?: number;  /** 95 % interval; absent until it can be told */
+  errorHigh?: number;  /** 95 % interval; absent until it can be told */
   raysPerSecond: number;  /** of late [1/s] */
   secondsSinceRestart: number;  /** wall clock [s] */
-  discardedSamples: number;  /** that were not finite, since the restart */
+  discardedSamples: number;  /** that were not finite or negative, since the restart */
+  discardedShare: number;  /** of the samples taken since the restart, 0..1 */
   editsApplied: number;  /** since the server began */
   restarts: number;  /** since the server began */
   framesPublished: number;  /** by the renderer, since the server began */
@@ -506,6 +509,8 @@ export interface Waited {
   steps: number;  /** passes since the restart */
   filmHash: string;  /** of mean, second moment and count of every pixel */
   estimatedError?: number;  /** relMSE; absent until it can be told */
+  errorLow?: number;  /** 95 % interval; absent until it can be told */
+  errorHigh?: number;  /** 95 % interval; absent until it can be told */
 }
 
 /** The server will close. */
@@ -924,9 +929,12 @@ const kStructs: { [name: string]: readonly Field[] } = {
     { name: "steps", type: "u32" },
     { name: "meanSamples", type: "f32" },
     { name: "estimatedError", type: "f32", optional: true },
+    { name: "errorLow", type: "f32", optional: true },
+    { name: "errorHigh", type: "f32", optional: true },
     { name: "raysPerSecond", type: "f64" },
     { name: "secondsSinceRestart", type: "f64" },
     { name: "discardedSamples", type: "u53" },
+    { name: "discardedShare", type: "f64" },
     { name: "editsApplied", type: "u53" },
     { name: "restarts", type: "u53" },
     { name: "framesPublished", type: "u53" },
@@ -1008,6 +1016,8 @@ const kStructs: { [name: string]: readonly Field[] } = {
     { name: "steps", type: "u32" },
     { name: "filmHash", type: "hash" },
     { name: "estimatedError", type: "f32", optional: true },
+    { name: "errorLow", type: "f32", optional: true },
+    { name: "errorHigh", type: "f32", optional: true },
   ],
   ServerBye: [
     { name: "reason", type: "string" },

@@ -15,6 +15,13 @@ export function formatError(value: number): string {
   return value >= 0.01 || value === 0 ? String(Number(value.toPrecision(2))) : value.toExponential(1);
 }
 
+/** An estimated error with its 95 % interval. One of 0 says only what the error is under. */
+export function formatInterval(error: number, low: number, high: number): string {
+  if (!Number.isFinite(error) || !Number.isFinite(high)) return 'not known yet';
+  if (error === 0 && high > 0) return `under ${formatError(high)}`;
+  return `${formatError(error)} (${formatError(low)}–${formatError(high)})`;
+}
+
 /** Samples per pixel: whole from ten on. */
 export function formatSamples(value: number): string {
   return value >= 10 ? formatCount(value) : formatNumber(value, 2);

@@ -1,0 +1,209 @@
+#include "renderer/techniques/audit_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "renderer/film/compare.hpp"
+
+namespace limn {
+namespace {
+
+using glm::dvec3;
+
+/// Half the width of a 95 % interval, in standard deviations.
+constexpr double kSigmas = 1.96;
+/// How far the denominators may be off, relative: the truth in them is known from few samples.
+constexpr double kDenominatorDoubt = 0.15;
+/// A pixel is shown this much brighter than the truth around it only by mistake, unless both halves agree with it.
+constexpr double kMostOverAround = 3.0;
+/// Squared differences under this many variances are noise.
+constexpr double kNoiseThatIsDoubted = 6.0;
+/// How far from the middle of two denominators the true one may be: half their distance times this. Measured on eleven scenes.
+constexpr double kDenominatorsApart = 1.75;
+const dvec3 kLuminance(0.2126, 0.7152, 0.0722);
+
+/// One pixel: what is shown, the truth as two halves know it, and the variance of one sample.
+struct Pixel {
+  uint32_t tile = 0;
+  double samples = 0.0;
+  dvec3 shown, even, odd, truth, variance;
+};
+
+std::vector<Pixel> readRecords(std::span<const shared::AuditRecord> records, uint32_t tiles) {
+  std::vector<Pixel> pixels;
+  for (size_t i = 0; i < records.size(); ++i) {
+    const shared::AuditRecord& r = records[i];
+    if (!(r.shownCount > 0.0f && r.evenCount > 0.0f && r.oddCount > 0.0f)) continue;
+    Pixel p{uint32_t(i % tiles), double(r.evenCount) + r.oddCount, r.shown, r.even, r.odd, {}, {}};
+    p.truth = (p.even * double(r.evenCount) + p.odd * double(r.oddCount)) / p.samples;
+    const double luminance = glm::dot(p.truth, kLuminance);
+    const dvec3 share = luminance > 0.0 ? p.truth / luminance : dvec3(0.0);
+    p.variance = share * share * (double(r.squares) / (p.samples - 1.0));
+    pixels.push_back(p);
+  }
+  return pixels;
+}
+
+/// Sums over the pixels of a part of the picture.
+struct Sums {
+  double count = 0.0, samples = 0.0;
+  dvec3 shown{0.0}, truth{0.0}, variance{0.0}, rest{0.0};
+
+  /// Of one sample, over the square of the mean.
+  dvec3 relativeVariance() const { return variance * count / glm::max(truth * truth, dvec3(1e-300)); }
+};
+
+/// What the truth of a pixel is likely to be before its own samples are looked at: what is shown there, less the bias that
+/// the tiles around have, as far as noise lets it be seen.
+class Expectation {
+ public:
+  Expectation(const std::vector<Pixel>& pixels, uint32_t tilesX, uint32_t tilesY)
+      : m_tilesX(tilesX), m_tilesY(tilesY), m_tiles(size_t(tilesX) * tilesY), m_around(m_tiles.size()) {
+    for (const Pixel& p : pixels)
+      for (Sums* s : {&m_all, &m_tiles[p.tile]}) {
+        s->count += 1.0;
+        s->samples += p.samples;
+        s->shown += p.shown;
+        s->truth += p.truth;
+        s->variance += p.variance;
+      }
+    addAround([](Sums& into, const Sums& s) {
+      into.count += s.count;
+      into.samples += s.samples;
+      into.shown += s.shown;
+      into.truth += s.truth;
+      into.variance += s.variance;
+    });
+    for (const Pixel& p : pixels) {
+      const dvec3 expected = truthOf(p);
+      const dvec3 mean = m_around[p.tile].truth / m_around[p.tile].count;
+      m_tiles[p.tile].rest += glm::clamp((p.even - expected) * (p.odd - expected), -mean * mean, mean * mean);
+    }
+    addAround([](Sums& into, const Sums& s) { into.rest += s.rest; });
+  }
+
+  /// The square of the truth as it is expected. Where a picture is wrong this is known too late: the error is told too small.
+  dvec3 expectedSquare(const Pixel& p) const {
+    const dvec3 expected = truthOf(p);
+    return expected * expected + restAround(p);
+  }
+  /// The same where the pixel's own samples speak as soon as they differ by more than noise from what is expected. Samples
+  /// that are low by chance then make the error that they tell too large. [Efron, Morris 1973]
+  dvec3 sampledSquare(const Pixel& p) const {
+    const dvec3 expected = truthOf(p), difference = p.truth - expected;
+    const dvec3 noise = glm::max(p.variance, p.truth * p.truth * m_around[p.tile].relativeVariance()) / p.samples;
+    const dvec3 spread = glm::max(difference * difference - kNoiseThatIsDoubted * noise, dvec3(0.0));
+    const dvec3 trust = spread / glm::max(spread + noise, dvec3(1e-300));
+    const dvec3 known = expected + trust * difference;
+    return known * known + (1.0 - trust) * restAround(p);
+  }
+  /// What relMSE adds to every denominator.
+  double leastSquare() const {
+    const double mean = (m_all.truth.x + m_all.truth.y + m_all.truth.z) / (3.0 * m_all.count);
+    return 0.01 * mean * mean + 1e-30;
+  }
+
+ private:
+  template <class Add>
+  void addAround(Add add) {
+    for (uint32_t y = 0; y < m_tilesY; ++y)
+      for (uint32_t x = 0; x < m_tilesX; ++x)
+        for (uint32_t v = y > 0 ? y - 1 : 0; v < std::min(y + 2, m_tilesY); ++v)
+          for (uint32_t u = x > 0 ? x - 1 : 0; u < std::min(x + 2, m_tilesX); ++u)
+            add(m_around[size_t(y) * m_tilesX + x], m_tiles[size_t(v) * m_tilesX + u]);
+  }
+
+  // Variance of the truth around what is expected.
+  dvec3 restAround(const Pixel& p) const {
+    const Sums& around = m_around[p.tile];
+    return glm::max(around.rest / around.count, dvec3(0.0));
+  }
+
+  // True over shown is that of the tiles around as far as the noise of so many samples lets it be seen, else of the picture.
+  dvec3 truthOf(const Pixel& p) const {
+    const Sums& around = m_around[p.tile];
+    dvec3 expected;
+    for (int c = 0; c < 3; ++c) {
+      if (!(m_all.shown[c] > 0.0) || !(m_all.truth[c] > 0.0)) {
+        expected[c] = m_all.truth[c] / m_all.count;
+        continue;
+      }
+      double ratio = m_all.truth[c] / m_all.shown[c];
+      if (around.shown[c] > 0.0)
+        ratio += (around.truth[c] / around.shown[c] - ratio) / (1.0 + m_all.relativeVariance()[c] / around.samples);
+      const double most = kMostOverAround * around.truth[c] / around.count;
+      expected[c] = std::min(p.shown[c] * ratio, std::max(most, std::min(p.even[c], p.odd[c])));
+    }
+    return expected;
+  }
+
+  uint32_t m_tilesX, m_tilesY;
+  Sums m_all;
+  std::vector<Sums> m_tiles, m_around;
+};
+
+/// In magnitude; what is larger is left out, as of any picture that is measured.
+double largestKept(const std::vector<dvec3>& quotients) {
+  std::vector<double> sizes;
+  for (const dvec3& q : quotients)
+    for (int c = 0; c < 3; ++c) sizes.push_back(std::abs(q[c]));
+  const auto last = sizes.end() - 1 - std::ptrdiff_t(std::floor(kDiscardedShare * double(sizes.size())));
+  std::nth_element(sizes.begin(), last, sizes.end());
+  return *last;
+}
+
+/// Mean quotient of each tile that has any.
+std::vector<double> tileMeans(const std::vector<Pixel>& pixels, const std::vector<dvec3>& quotients, size_t tiles) {
+  const double largest = largestKept(quotients);
+  std::vector<double> sums(tiles), kept(tiles), means;
+  for (size_t i = 0; i < pixels.size(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      if (std::abs(quotients[i][c]) > largest) continue;
+      sums[pixels[i].tile] += quotients[i][c];
+      kept[pixels[i].tile] += 1.0;
+    }
+  for (size_t i = 0; i < tiles; ++i)
+    if (kept[i] > 0.0) means.push_back(sums[i] / kept[i]);
+  return means;
+}
+
+double meanOf(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+}
+
+/// Mean over the tiles with an interval that minds their skewness: where few tiles make the error, the mean is more likely
+/// too low than too high. [Johnson 1978] `apart` is how far the denominators let the mean be off.
+FilmError intervalOf(const std::vector<double>& tiles, double apart) {
+  const double n = double(tiles.size()), mean = meanOf(tiles);
+  double second = 0.0, third = 0.0;
+  for (const double e : tiles) second += (e - mean) * (e - mean) / (n - 1.0), third += std::pow(e - mean, 3.0) / n;
+  const double deviation = std::sqrt(second / n);
+  const double skewness = second > 0.0 ? third / std::pow(second, 1.5) : 0.0;
+  const double middle = mean + skewness * (1.0 + 2.0 * kSigmas * kSigmas) / (6.0 * std::sqrt(n)) * deviation;
+  const double half = std::hypot(kSigmas * deviation, kSigmas * kDenominatorDoubt * std::max(mean, 0.0), apart);
+  return {std::max(mean, 0.0), std::max(middle - half, 0.0), std::max(middle + half, 0.0)};
+}
+
+}  // namespace
+
+FilmError estimateFromAudit(std::span<const shared::AuditRecord> records, uint32_t tilesX, uint32_t tilesY) {
+  const size_t tiles = size_t(tilesX) * tilesY;
+  const std::vector<Pixel> pixels = readRecords(records, uint32_t(tiles));
+  if (pixels.empty()) return {};
+  const Expectation expectation(pixels, tilesX, tilesY);
+  std::vector<dvec3> expected, sampled;
+  for (const Pixel& p : pixels) {
+    const dvec3 square = (p.shown - p.even) * (p.shown - p.odd);
+    expected.push_back(square / (expectation.expectedSquare(p) + expectation.leastSquare()));
+    sampled.push_back(square / (expectation.sampledSquare(p) + expectation.leastSquare()));
+  }
+  const std::vector<double> low = tileMeans(pixels, expected, tiles), high = tileMeans(pixels, sampled, tiles);
+  if (low.size() < kLeastTiles || high.size() != low.size()) return {};
+  std::vector<double> middle(low.size());
+  for (size_t i = 0; i < middle.size(); ++i) middle[i] = 0.5 * (low[i] + high[i]);
+  return intervalOf(middle, kDenominatorsApart * 0.5 * std::abs(meanOf(high) - meanOf(low)));
+}
+
+}  // namespace limn
