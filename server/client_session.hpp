@@ -38,9 +38,9 @@ class ClientSession {
   bool hasQueued() const { return !m_queue.empty(); }
   size_t queuedMessages() const { return m_queue.size(); }
 
-  /// Whether a picture could be sent at once.
   /// Whether the renderer has to go on for this client: it watches, or waits for an error that pictures tell.
   bool needsPictures() const { return watching || !errorWaits.empty(); }
+  /// Whether a picture may be encoded for this client. It is sent once the client has joined.
   bool wantsFrame() const { return greeted && watching && !closing && !ready && flow.hasCredit(); }
   bool isNew(const Frame& frame) const { return frame.info.frameId > newestFrameId; }
   EncodingKey encodingFor(const Frame& frame) const { return flow.encodingFor(frame.info.phase, takesJpeg, takesPng); }
@@ -51,6 +51,8 @@ class ClientSession {
 
   // State of the conversation; service*.cpp writes it.
   bool greeted = false;                ///< hello came and was good
+  bool sceneAsked = false;             ///< of the renderer, for the scene that a joining client is told
+  bool joined = false;                 ///< that scene was queued: before it come no statuses, pictures and other scenes
   bool watching = false;               ///< pictures are wanted
   bool takesJpeg = true, takesPng = true;
   uint32_t lastSeq = 0, helloSeq = 0;

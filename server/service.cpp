@@ -97,13 +97,16 @@ void Service::onWake() {
 
 void Service::onTick() {
   const double now = nowSeconds();
-  for (auto& [id, session] : m_sessions) checkTimers(session, now);
+  for (auto& [id, session] : m_sessions) {
+    checkTimers(session, now);
+    askForScene(session);
+  }
   if (m_ready && (m_viewDoubtful || !m_editors.empty())) describeForAll();
   if (now - m_lastStatus >= kStatusSeconds) {
     m_lastStatus = now;
     const protocol::Status status = toWire(m_replies.status());
     for (auto& [id, session] : m_sessions)
-      if (session.greeted) sendStatus(session, status);
+      if (session.joined) sendStatus(session, status);
   }
   distributeFrames();
   const bool leave =

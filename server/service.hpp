@@ -81,6 +81,7 @@ class Service : private TransportHandler {
   // service_messages.cpp: what clients say
   friend struct MessageHandler;
   void greet(ClientSession& session, const protocol::ClientHello& hello);
+  void askForScene(ClientSession& session);
   /// `batch`: the edits stand in a list of the message's, not in the message itself.
   void edit(ClientSession& session, uint32_t seq, const std::vector<protocol::Edit>& edits, bool batch = false);
   bool askLoader(ClientSession& session, LoaderJob job);
@@ -89,6 +90,7 @@ class Service : private TransportHandler {
   // service_replies.cpp: what the renderer says
   friend struct ReplyHandler;
   void routeReplies();
+  void join(ClientSession& session, const SceneSummary& scene);
   void tellAll(const Error& error);
   void describeForAll();
   void learnView(const SceneSummary& scene);

@@ -20,7 +20,7 @@ void Service::distributeFrames() {
     const EncodingKey key = session.encodingFor(*newest);
     const auto made = m_encoded.find(key);
     if (made == m_encoded.end()) wanted.insert(key);
-    else {
+    else if (session.joined) {
       session.take(made->second);
       m_transport->wantWrite(id);
     }
@@ -30,7 +30,7 @@ void Service::distributeFrames() {
 
 void Service::offer(const std::shared_ptr<const EncodedFrame>& encoded) {
   for (auto& [id, session] : m_sessions) {
-    if (!session.wantsFrame() || !session.isNew(*encoded->frame)) continue;
+    if (!session.joined || !session.wantsFrame() || !session.isNew(*encoded->frame)) continue;
     if (session.encodingFor(*encoded->frame) != encoded->key) continue;
     session.take(encoded);
     m_transport->wantWrite(id);

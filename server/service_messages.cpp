@@ -141,11 +141,19 @@ void Service::greet(ClientSession& session, const protocol::ClientHello& hello) 
   answer.stages = session.stages;
   answer.editable = protocol::editableTargets();
   send(session, answer);
-  ask(session, hello.seq, DescribeRequest{{session.id(), hello.seq}});
-  sendStatus(session, toWire(status));
+  askForScene(session);
   tellWatched();
   distributeFrames();
   logInfo("client " + std::to_string(session.id()) + ": " + printable(hello.client));
+}
+
+// The client did not ask, so a full box is no error of its: the next tick tries again.
+void Service::askForScene(ClientSession& session) {
+  if (!session.greeted || session.sceneAsked || session.closing) return;
+  session.sceneAsked = m_mailbox.push(DescribeRequest{{session.id(), session.helloSeq}});
+  if (!session.sceneAsked) return;
+  ++m_counters.requests;
+  ++session.unanswered;
 }
 
 void Service::edit(ClientSession& session, uint32_t seq, const std::vector<protocol::Edit>& edits, bool batch) {

@@ -53,10 +53,9 @@ struct ReplyHandler {
     service.learnView(*reply.scene);
     if (reply.to.client == kNobody) return onOwnDescription(*reply.scene);
     if (!session) return;
-    const bool joined = reply.to.seq == session->helloSeq;
-    protocol::SceneMessage scene =
-        toWire(*reply.scene, joined ? protocol::SceneCause::joined : protocol::SceneCause::asked);
-    if (!joined) scene.seq = reply.to.seq;
+    if (reply.to.seq == session->helloSeq) return service.join(*session, *reply.scene);
+    protocol::SceneMessage scene = toWire(*reply.scene, protocol::SceneCause::asked);
+    scene.seq = reply.to.seq;
     service.send(*session, scene);
   }
   void operator()(const LoadReply& reply) const {
@@ -117,6 +116,13 @@ void Service::routeReplies() {
   }
 }
 
+// The newest picture follows: pictures are distributed after replies.
+void Service::join(ClientSession& session, const SceneSummary& scene) {
+  session.joined = true;
+  send(session, toWire(scene, protocol::SceneCause::joined));
+  sendStatus(session, toWire(m_replies.status()));
+}
+
 void Service::tellAll(const Error& error) {
   for (auto& [id, session] : m_sessions)
     if (session.greeted) sendError(session, 0, error);
@@ -140,7 +146,7 @@ void Service::learnView(const SceneSummary& scene) {
 void Service::broadcastScene(const SceneSummary& scene, protocol::SceneCause cause, ConnectionId except) {
   const protocol::ServerMessage message = toWire(scene, cause);
   for (auto& [id, session] : m_sessions)
-    if (session.greeted && id != except) send(session, message);
+    if (session.joined && id != except) send(session, message);
 }
 
 void Service::sendStatus(ClientSession& session, const protocol::Status& status) {

@@ -8,7 +8,7 @@
 namespace limn::server::testing {
 
 FakeRenderer::FakeRenderer(const Options& options, Mailbox& mailbox, FrameSlot& frames, StatusQueue& replies)
-    : m_options(options), m_mailbox(mailbox), m_frames(frames), m_replies(replies) {
+    : m_options(options), m_mailbox(mailbox), m_frames(frames), m_replies(replies), m_watched(options.watched) {
   m_scene.name = "fake.glb";
   m_scene.hash = 0x1234567890abcdefull;
   m_scene.sceneRevision = m_scene.viewRevision = 1;
@@ -52,7 +52,8 @@ void FakeRenderer::run() {
       std::this_thread::yield();
       continue;
     }
-    for (const Request& request : m_mailbox.drain(superseded)) handle(request);
+    if (!m_busy)
+      for (const Request& request : m_mailbox.drain(superseded)) handle(request);
     for (EditAck& ack : superseded) {
       ack.sceneRevision = m_scene.sceneRevision;
       ack.viewRevision = m_scene.viewRevision;

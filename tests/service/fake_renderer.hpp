@@ -17,6 +17,7 @@ class FakeRenderer {
     double frameSeconds = 0.001;
     uint32_t materials = 2;
     bool noisy = false;                  ///< pictures that hardly compress
+    bool watched = false;                ///< before the service says so
   };
 
   FakeRenderer(const Options& options, Mailbox& mailbox, FrameSlot& frames, StatusQueue& replies);
@@ -25,8 +26,10 @@ class FakeRenderer {
   uint64_t framesPublished() const { return m_published; }
   /// The pixels of a picture, for comparison with what arrived.
   static std::vector<uint8_t> pixels(const Options& options, uint64_t frameId);
-  /// Held: the mailbox is not drained.
+  /// Held: the mailbox is not drained, and nothing is drawn.
   void hold(bool held) { m_held = held; }
+  /// Busy: the mailbox is not drained, and pictures go on.
+  void keepBusy(bool busy) { m_busy = busy; }
 
  private:
   void run();
@@ -40,7 +43,7 @@ class FakeRenderer {
   FrameSlot& m_frames;
   StatusQueue& m_replies;
   std::atomic<uint64_t> m_published{0};
-  std::atomic<bool> m_held{false};
+  std::atomic<bool> m_held{false}, m_busy{false};
 
   // Render thread from here on.
   SceneSummary m_scene;
@@ -48,7 +51,7 @@ class FakeRenderer {
   std::vector<WaitRequest> m_waits;
   uint32_t m_steps = 0;
   uint64_t m_frameId = 0, m_edits = 0, m_restarts = 0;
-  bool m_watched = false;
+  bool m_watched;
   double m_editAt = 0.0;
   std::thread m_thread;
 };

@@ -21,6 +21,12 @@ std::vector<uint8_t> rgbOf(const FakeRenderer::Options& options, uint64_t frameI
   return rgb;
 }
 
+/// Returns once the renderer has published so many pictures more.
+void publishMore(const TestService& server, uint64_t pictures) {
+  const uint64_t target = server.renderer->framesPublished() + pictures;
+  while (server.renderer->framesPublished() < target) std::this_thread::yield();
+}
+
 TEST(Frames, thePictureAtRestIsLossless) {
   TestService server;
   TestClient client(server.port());
@@ -45,6 +51,48 @@ TEST(Frames, whoComesLateGetsThePictureAtRestAtOnce) {
   second.greet();
   EXPECT_TRUE(second.awaitPicture().header.flags & protocol::kFrameFinal);
   EXPECT_EQ(second.picturesSeen, 1u);
+}
+
+/// A client joins while the renderer draws and does not look into its mailbox; `meanwhile` is what others do.
+void expectSceneBeforePictures(TestService& server, const std::function<void()>& meanwhile = [] {}) {
+  server.renderer->keepBusy(true);
+  publishMore(server, 1);
+  TestClient client(server.port());
+  client.greet();
+  const uint64_t atHello = server.renderer->framesPublished();
+  meanwhile();
+  // Three pictures at most are of the time before: one not counted yet, one being encoded, and one to be encoded next.
+  const double encoded = server.metric("limn_frames_encoded_total");
+  while (server.metric("limn_frames_encoded_total") < encoded + 4) std::this_thread::yield();
+  const uint32_t ping = client.nextSeq();
+  client.send(protocol::Ping{ping});
+  ASSERT_TRUE(client.step());
+  ASSERT_TRUE(client.text && std::holds_alternative<protocol::Pong>(*client.text)) << "it came before the scene";
+
+  server.renderer->keepBusy(false);
+  ASSERT_TRUE(client.step());
+  ASSERT_TRUE(client.text && std::holds_alternative<protocol::SceneMessage>(*client.text));
+  EXPECT_EQ(std::get<protocol::SceneMessage>(*client.text).cause, protocol::SceneCause::joined);
+  ASSERT_TRUE(client.step());
+  ASSERT_TRUE(client.text && std::holds_alternative<protocol::Status>(*client.text));
+  EXPECT_GT(client.awaitPicture().header.frameId, atHello) << "an older picture was kept";
+}
+
+TEST(Frames, theFirstClientHearsOfTheSceneBeforeItSeesPictures) {
+  TestService::Options options = endless();
+  options.renderer.watched = true;
+  TestService server(options);
+  expectSceneBeforePictures(server);
+}
+
+TEST(Frames, aJoiningClientDoesNotHoldUpThePicturesOfOthers) {
+  TestService server(endless());
+  TestClient first(server.port());
+  first.greet();
+  first.awaitPicture();
+  expectSceneBeforePictures(server, [&] {
+    for (int i = 0; i < 20; ++i) first.awaitPicture();
+  });
 }
 
 TEST(Frames, movingPicturesAreJpegOfThePublishedSize) {
@@ -79,8 +127,7 @@ TEST(Frames, neverMoreThanTwoInFlight) {
   client.greet();
   const auto first = client.awaitPicture(), second = client.awaitPicture();
   // The renderer goes on; the ping's answer is behind anything the server would have sent.
-  for (const uint64_t target = server.renderer->framesPublished() + 20; server.renderer->framesPublished() < target;)
-    std::this_thread::yield();
+  publishMore(server, 20);
   const uint32_t seq = client.nextSeq();
   client.send(protocol::Ping{seq});
   client.awaitReply<protocol::Pong>(seq);
@@ -176,8 +223,7 @@ TEST(Frames, nothingIsEncodedWithoutACredit) {
   client.awaitPicture();
   client.awaitPicture();
   const double encoded = server.metric("limn_frames_encoded_total");
-  for (const uint64_t target = server.renderer->framesPublished() + 50; server.renderer->framesPublished() < target;)
-    std::this_thread::yield();
+  publishMore(server, 50);
   EXPECT_EQ(server.metric("limn_frames_encoded_total"), encoded);
   EXPECT_LE(encoded, 3.0);
 }
