@@ -5,6 +5,7 @@ import type { Area, PixelHash } from '../channel';
 export class Presenter {
   private context: OffscreenCanvasRenderingContext2D;
   private hidden = false;
+  private drawn = false;
 
   constructor(private readonly canvas: OffscreenCanvas) {
     const context = canvas.getContext('2d', { alpha: false, colorSpace: 'srgb' });
@@ -23,9 +24,13 @@ export class Presenter {
     return createImageBitmap(blob, { colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
   }
 
-  /** Draws with the next display frame; at once when the page is hidden, as no display frame would come. */
+  /**
+   * Draws with the next display frame. At once when the page is hidden, as no display frame would come, and when the
+   * canvas is empty, as the first one comes late to a worker that has just begun.
+   */
   async present(frame: EncodedFrame, picture: ImageBitmap): Promise<void> {
-    if (!this.hidden) await nextDisplayFrame();
+    if (!this.hidden && this.drawn) await nextDisplayFrame();
+    this.drawn = true;
     const { x, y, width, height, fullWidth, fullHeight } = frame.header;
     if (this.canvas.width !== fullWidth || this.canvas.height !== fullHeight) {
       this.canvas.width = fullWidth;
