@@ -192,8 +192,8 @@ Result<void> PointProjectionTechnique::restart(const TechniqueContext& context, 
   m_fillStride = PixelOrder::kStrides[0];
   m_converged = m_preview = false;
   const bool dark = !m_lit && m_lighting.empty();
-  if (m_lit || !gathers()) planPass(0);
-  else planPreview();
+  if (gathers()) planPreview();
+  else planPass(0);
   return gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
     context.film.recordClear(r);
     r.fillBuffer(m_indirect, 0, 0, 0);
@@ -234,7 +234,7 @@ Progress PointProjectionTechnique::progress() const {
 }
 
 double PointProjectionTechnique::secondsToGrid(uint32_t stride) const {
-  const double first = gathers() ? m_gatherRate.secondsFor(uint64_t(m_width / m_settings.startGrid + 1) * (m_height / m_settings.startGrid + 1)) : 0.0;
+  const double first = gathers() ? m_previewGatherRate.secondsFor(uint64_t(m_width / m_settings.startGrid + 1) * (m_height / m_settings.startGrid + 1)) : 0.0;
   for (size_t i = 0; i < PixelOrder::kStrides.size(); ++i)
     if (PixelOrder::kStrides[i] == stride) return first + m_shadeRate.secondsFor(m_pixelOrder.levelEnd[i]);
   return 0.0;

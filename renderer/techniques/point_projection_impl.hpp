@@ -73,6 +73,7 @@ class PointProjectionTechnique final : public Technique {
 
   // point_projection_plan.cpp
   void planPreview();
+  void pushPreviewLight();
   void planPass(uint32_t pass);
   void planLighting();
   void pushCoarsePicture();
@@ -126,8 +127,8 @@ class PointProjectionTechnique final : public Technique {
 
   TaskQueue m_tasks;     ///< of the present pass
   TaskQueue m_lighting;  ///< all light of all points; goes on where a new view interrupts it
-  WorkRate m_previewRate{1e4}, m_relightRate{3e3}, m_pathRate{1e2}, m_bounceRate{1e4}, m_spreadRate{1e3}, m_siteRate{1e6}, m_gatherRate{8e3}, m_shadeRate{5e5},
-      m_filterRate{2e3};
+  WorkRate m_previewRate{1e4}, m_relightRate{3e3}, m_pathRate{1e2}, m_bounceRate{1e4}, m_spreadRate{1e3}, m_siteRate{1e6},
+      m_previewGatherRate{2e4}, m_gatherRate{8e3}, m_shadeRate{5e5}, m_filterRate{2e3};
   uint64_t m_lightingRevision = 0;
   bool m_pointsKnown = false;  ///< m_points are those of the settings
   bool m_lit = false;          ///< the points carry all their light
@@ -138,7 +139,7 @@ class PointProjectionTechnique final : public Technique {
   uint32_t m_levelCount = 0, m_levelDone = 0;  ///< pixels of that level, selected and gathered
   uint32_t m_listFirst = 0;    ///< entry of m_list that the present gathers begin at
   uint32_t m_lateTurn = 0;     ///< shares gathered after the levels
-  bool m_dropLookedUp = false; ///< by the samples of this pass
+  bool m_dropLookedUp = false; ///< most of it, by the samples of this pass
   float m_meanLuminance = 0.0f;  ///< gathered on the start grid [W·sr⁻¹·m⁻²]
   uint32_t m_pass = 0;
   bool m_preview = false;      ///< a first picture from few points is under way

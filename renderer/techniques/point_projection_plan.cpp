@@ -24,10 +24,19 @@ constexpr float kDisplayRange = 16.0f;
 
 }  // namespace
 
-// After a change of light: a picture from a first part of the points, and before all light is there. It is shown, and then
-// replaced: no bit of it stays, so that pass 0 is the same whether there was a preview or not.
+// A picture that is shown early, from gathers with few projections and no rays, and after a change of light from a first part of
+// the points and before all light is there. It is replaced: no bit of it stays, so that pass 0 is the same without it.
 void PointProjectionTechnique::planPreview() {
   m_preview = m_dropLookedUp = true;
+  if (!m_lit) pushPreviewLight();
+  pushCoarsePicture();
+  if (m_lit) return;
+  pushSites(m_pixelOrder.levelEnd[0], uint32_t(m_pixelOrder.pixels.size()));
+  pushFill(PixelOrder::kStrides[0] / 2);
+  pushShade(uint32_t(m_pixelOrder.pixels.size()), true);
+}
+
+void PointProjectionTechnique::pushPreviewLight() {
   const uint32_t slots = std::min(kPreviewSlots, m_light.layout().clusterSize);
   if (!m_previewLit) pushRelight(m_tasks, {0, slots}, 1, m_previewRate);
   if (!m_previewLit && bouncesAtPoints() > 0 && m_settings.paths > 0) pushPaths(m_tasks, kPreviewPaths, slots);
@@ -36,18 +45,14 @@ void PointProjectionTechnique::planPreview() {
                   if (m_lighting.empty()) planLighting();
                   return 0u;
                 }, {}});
-  pushCoarsePicture();
-  pushSites(m_pixelOrder.levelEnd[0], uint32_t(m_pixelOrder.pixels.size()));
-  pushFill(PixelOrder::kStrides[0] / 2);
-  pushShade(uint32_t(m_pixelOrder.pixels.size()), true);
 }
 
 // Pass 0 gathers a coarse grid. After a few that gather nothing, others refine to every 4th, 2nd and each pixel, a part of a level
 // each; then what was interpolated is gathered, share by share, and then every pixel again. All take a sample of direct light.
 void PointProjectionTechnique::planPass(uint32_t pass) {
   const auto pixels = uint32_t(m_pixelOrder.pixels.size());
-  // Light that was looked up before is dropped when a level is complete, and each time that the number of samples has
-  // doubled: at least half of them always know what the latest gathers know.
+  // Light that was looked up before counts for less when a level is complete, and each time that the number of samples has
+  // doubled: most of them always know what the latest gathers know.
   m_dropLookedUp = pass == 0 || std::has_single_bit(pass);
   if (!gathers()) return pushShade(pixels, pass == 0);
   if (pass == 0) {
@@ -141,7 +146,7 @@ void PointProjectionTechnique::pushSites(uint32_t from, uint32_t end) {
 
 void PointProjectionTechnique::pushGather(const char* name, Task::Begin select) {
   m_listFirst = 0;
-  m_tasks.push({name, &m_gatherRate, std::move(select),
+  m_tasks.push({name, m_preview ? &m_previewGatherRate : &m_gatherRate, std::move(select),
                 [this](const TechniqueContext& c, uint32_t first, uint32_t count) { return gather(c, m_listFirst + first, count); }, 32});
 }
 

@@ -6,6 +6,9 @@
 namespace limn {
 namespace {
 
+/// A pixel of a preview projects one point of so many that one of a pass does.
+constexpr uint32_t kPreviewProjections = 4;
+
 constexpr uint32_t kWorkgroup = 64;  // of gather_sites.comp and point_projection_shade.comp
 
 /// Points projected at a site of a bounce: what they miss is averaged over many sites.
@@ -49,7 +52,8 @@ shared::PointProjectionPush PointProjectionTechnique::gatherPush(const Technique
 
 Result<void> PointProjectionTechnique::gather(const TechniqueContext& context, uint32_t first, uint32_t count) {
   auto push = gatherPush(context, first, count);
-  if (m_preview) push.correctionRays = 0;  // most points that rays would find are dark yet
+  if (m_preview) push.correctionRays = 0;  // after a change of light most points that rays would find are dark yet
+  if (m_preview && m_lit) push.projections = std::max(1u, push.projections / kPreviewProjections);
   const auto all = gatherBindings(context);
   m_work.pixelsGathered += count;
   return gpu::runNow(context.device, [&](vk::CommandRecorder& r) { m_gather.recordAtPixels(r, all, push); });

@@ -67,7 +67,7 @@ struct ShadePush {
   uint sampleIndex;     // of the film's samples; 0 goes through the pixel's centre
   uint seed;
   uint firstOfFilm;     // 1: the film holds nothing yet; what it holds is replaced
-  uint firstOfGather;   // 1: looked-up light of earlier samples is stale and dropped
+  uint firstOfGather;   // 1: looked-up light of earlier samples is stale and counts for less
   uint directOnly;      // 1: no indirect light at all
   uint pad;
 };
