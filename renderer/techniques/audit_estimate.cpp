@@ -20,8 +20,9 @@ constexpr double kDenominatorDoubt = 0.15;
 constexpr double kMostOverAround = 3.0;
 /// Squared differences under this many variances are noise.
 constexpr double kNoiseThatIsDoubted = 6.0;
-/// How far from the middle of two denominators the true one may be: half their distance times this. Measured on eleven scenes.
-constexpr double kDenominatorsApart = 1.75;
+/// Of two ways to know the denominators, the share of the one that the pixel's own samples have a say in; and how far the error
+/// may be from there, in halves of the distance between both. Measured on eleven scenes.
+constexpr double kSampledShare = 0.4, kDenominatorsApart = 1.75;
 const dvec3 kLuminance(0.2126, 0.7152, 0.0722);
 
 /// One pixel: what is shown, the truth as two halves know it, and the variance of one sample.
@@ -202,7 +203,7 @@ FilmError estimateFromAudit(std::span<const shared::AuditRecord> records, uint32
   const std::vector<double> low = tileMeans(pixels, expected, tiles), high = tileMeans(pixels, sampled, tiles);
   if (low.size() < kLeastTiles || high.size() != low.size()) return {};
   std::vector<double> middle(low.size());
-  for (size_t i = 0; i < middle.size(); ++i) middle[i] = 0.5 * (low[i] + high[i]);
+  for (size_t i = 0; i < middle.size(); ++i) middle[i] = std::lerp(low[i], high[i], kSampledShare);
   return intervalOf(middle, kDenominatorsApart * 0.5 * std::abs(meanOf(high) - meanOf(low)));
 }
 
