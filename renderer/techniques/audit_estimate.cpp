@@ -85,20 +85,21 @@ class Expectation {
     addAround([](Sums& into, const Sums& s) { into.rest += s.rest; });
   }
 
-  /// The square of the truth as it is expected. Where a picture is wrong this is known too late: the error is told too small.
-  dvec3 expectedSquare(const Pixel& p) const {
-    const dvec3 expected = truthOf(p);
-    return expected * expected + restAround(p);
-  }
-  /// The same where the pixel's own samples speak as soon as they differ by more than noise from what is expected. Samples
-  /// that are low by chance then make the error that they tell too large. [Efron, Morris 1973]
-  dvec3 sampledSquare(const Pixel& p) const {
+  /// The square of the truth, known in two ways.
+  struct Squares {
+    dvec3 expected;  ///< where a picture is wrong this is known too late: the error is told too small
+    dvec3 sampled;   ///< the pixel's own samples speak too; where they are low by chance, the error is told too large
+  };
+  /// Own samples speak as soon as they differ by more than noise from what is expected. [Efron, Morris 1973]
+  Squares squaresOf(const Pixel& p) const {
+    const Sums& around = m_around[p.tile];
+    const dvec3 rest = glm::max(around.rest / around.count, dvec3(0.0));  // variance of the truth around what is expected
     const dvec3 expected = truthOf(p), difference = p.truth - expected;
-    const dvec3 noise = glm::max(p.variance, p.truth * p.truth * m_around[p.tile].relativeVariance()) / p.samples;
+    const dvec3 noise = glm::max(p.variance, p.truth * p.truth * around.relativeVariance()) / p.samples;
     const dvec3 spread = glm::max(difference * difference - kNoiseThatIsDoubted * noise, dvec3(0.0));
     const dvec3 trust = spread / glm::max(spread + noise, dvec3(1e-300));
     const dvec3 known = expected + trust * difference;
-    return known * known + (1.0 - trust) * restAround(p);
+    return {expected * expected + rest, known * known + (1.0 - trust) * rest};
   }
   /// What relMSE adds to every denominator.
   double leastSquare() const {
@@ -116,15 +117,10 @@ class Expectation {
             add(m_around[size_t(y) * m_tilesX + x], m_tiles[size_t(v) * m_tilesX + u]);
   }
 
-  // Variance of the truth around what is expected.
-  dvec3 restAround(const Pixel& p) const {
-    const Sums& around = m_around[p.tile];
-    return glm::max(around.rest / around.count, dvec3(0.0));
-  }
-
   // True over shown is that of the tiles around as far as the noise of so many samples lets it be seen, else of the picture.
   dvec3 truthOf(const Pixel& p) const {
     const Sums& around = m_around[p.tile];
+    const dvec3 noise = m_all.relativeVariance() / around.samples;
     dvec3 expected;
     for (int c = 0; c < 3; ++c) {
       if (!(m_all.shown[c] > 0.0) || !(m_all.truth[c] > 0.0)) {
@@ -133,7 +129,7 @@ class Expectation {
       }
       double ratio = m_all.truth[c] / m_all.shown[c];
       if (around.shown[c] > 0.0)
-        ratio += (around.truth[c] / around.shown[c] - ratio) / (1.0 + m_all.relativeVariance()[c] / around.samples);
+        ratio += (around.truth[c] / around.shown[c] - ratio) / (1.0 + noise[c]);
       const double most = kMostOverAround * around.truth[c] / around.count;
       expected[c] = std::min(p.shown[c] * ratio, std::max(most, std::min(p.even[c], p.odd[c])));
     }
@@ -194,11 +190,13 @@ FilmError estimateFromAudit(std::span<const shared::AuditRecord> records, uint32
   const std::vector<Pixel> pixels = readRecords(records, uint32_t(tiles));
   if (pixels.empty()) return {};
   const Expectation expectation(pixels, tilesX, tilesY);
+  const double least = expectation.leastSquare();
   std::vector<dvec3> expected, sampled;
   for (const Pixel& p : pixels) {
     const dvec3 square = (p.shown - p.even) * (p.shown - p.odd);
-    expected.push_back(square / (expectation.expectedSquare(p) + expectation.leastSquare()));
-    sampled.push_back(square / (expectation.sampledSquare(p) + expectation.leastSquare()));
+    const Expectation::Squares squares = expectation.squaresOf(p);
+    expected.push_back(square / (squares.expected + least));
+    sampled.push_back(square / (squares.sampled + least));
   }
   const std::vector<double> low = tileMeans(pixels, expected, tiles), high = tileMeans(pixels, sampled, tiles);
   if (low.size() < kLeastTiles || high.size() != low.size()) return {};
