@@ -14,7 +14,7 @@ const TechniqueInfo& pointProjectionInfo() {
       {{"points", "Points on all surfaces", "points", integer, 16384, 1048576, 262144, rebuild},
        {"clusters", "Clusters that share an importance; rounded to a power of two", "clusters", integer, 64, 1024, 512, rebuild},
        {"projections", "Points projected at a gathered pixel", "points", integer, 512, 4096, 3072, regather},
-       {"correctionRays", "Rays that correct what a gather's projections show; 0 is none", "rays", integer, 0, 256, 32, regather},
+       {"correctionRays", "Rays that correct what a gather's projections show; 0 is none", "rays", integer, 0, 256, 64, regather},
        {"microSize", "Side of the micro-buffer", "texels", integer, 8, 32, 32, relight},
        {"bounces", "Indirect bounces; 0 is direct light only", "bounces", integer, 0, 64, 32, relight},
        {"bouncePoints", "Points at which bounces are gathered; the others interpolate", "points", integer, 256, 65536, 16384, rebuild},

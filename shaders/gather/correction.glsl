@@ -1,7 +1,7 @@
 // Rays correct what a micro-buffer brings to a site: the projection serves as a control variate of the integral, and the
 // rays estimate what it missed or added. Texels are drawn by what they bring; a ray through a random place of the texel
 // finds the surface that is really seen there, and the nearest point tells what leaves it. On average the gather then
-// holds no error of splats, holes and texels; what is left is noise in proportion to that error.
+// holds hardly an error of splats, holes and texels; what is left is noise in proportion to that error.
 #ifndef LIMN_CORRECTION_GLSL
 #define LIMN_CORRECTION_GLSL
 #include "shaders/lib/alpha.glsl"
@@ -14,20 +14,36 @@ layout(binding = BINDING_COUNTERS, scalar) buffer Counters { uint counters[]; };
 
 // Share of the rays that is drawn as if all texels were equally bright: what a dark texel hides is found, and the quotient of
 // a correction and its probability stays bounded.
-const float kEvenShare = 0.3;
+const float kEvenShare = 0.5;
+// A ray counts for at most this many times what its texel was drawn for. Where a gather missed something small and bright
+// altogether, one ray in many gathers would find it and be a blotch: that light is cut, and is the bias of a correction.
+const float kMostQuotient = 4.0;
 
-// Weights of the texels, each invocation those of a stretch: importance[] holds what they bring, clusterRun[] what they would
-// bring at radiance 1. Returns the sum.
-float weighTexels() {
+// Luminance in the micro-buffer around texel `i`: what is bright may begin in the texel beside.
+float brightestAround(uint i) {
+  ivec2 t = ivec2(i % push.microSize, i / push.microSize);
+  float most = 0.0;
+  for (int n = 0; n < 9; ++n) {
+    ivec2 other = clamp(t + ivec2(n % 3 - 1, n / 3 - 1), ivec2(0), ivec2(push.microSize) - 1);
+    most = max(most, importance[uint(other.y) * push.microSize + uint(other.x)]);
+  }
+  return most;
+}
+
+float weightOf(uint texel) { return uintBitsToFloat(clusterRun[texel]); }
+
+// Weights of the texels, each invocation those of a stretch: importance[] holds their luminances, clusterRun[] what they would
+// bring at radiance 1, and then the weights. Returns their sum; `even` is the luminance that all texels count for at least.
+float weighTexels(out float even) {
   float brought = 0.0, factors = 0.0, sum = 0.0;
-  for (uint i = 0u; i < kGroup; ++i) brought += sumOfLanes[i], factors += weightOfLanes[i];
+  for (uint i = 0u; i < kGroup; ++i) brought += sumOfLanes[i], factors += factorsOfLanes[i];
   barrier();
-  float even = brought > 0.0 ? kEvenShare / (1.0 - kEvenShare) * brought / factors : 1.0;
+  even = brought > 0.0 ? kEvenShare / (1.0 - kEvenShare) * brought / factors : 1.0;
   uint count = push.microSize * push.microSize, stretch = (count + kGroup - 1u) / kGroup;
   uint first = min(gl_LocalInvocationIndex * stretch, count), end = min(first + stretch, count);
   for (uint i = first; i < end; ++i) {
-    importance[i] += even * uintBitsToFloat(clusterRun[i]);
-    sum += importance[i];
+    clusterRun[i] = floatBitsToUint(weightOf(i) * (even + brightestAround(i)));
+    sum += weightOf(i);
   }
   sumOfLanes[gl_LocalInvocationIndex] = sum;
   barrier();
@@ -41,7 +57,7 @@ uint texelAt(float place) {
   uint count = push.microSize * push.microSize, stretch = (count + kGroup - 1u) / kGroup, lane = 0u;
   while (lane + 1u < kGroup && place >= sumOfLanes[lane]) place -= sumOfLanes[lane++];
   uint texel = min(lane * stretch, count - 1u), last = min(texel + stretch, count) - 1u;
-  while (texel < last && place >= importance[texel]) place -= importance[texel++];
+  while (texel < last && place >= weightOf(texel)) place -= weightOf(texel++);
   return texel;
 }
 
@@ -64,7 +80,7 @@ vec3 radianceAlong(Site s, vec3 dirW, uint alphaState, out bool known) {
 // What the rays of this invocation add to the site's light. Begins and ends with the other invocations at barriers.
 IndirectTexel correction(Site s, uint key) {
   IndirectTexel sum = IndirectTexel(vec3(0.0), 0.0, vec3(0.0), kIndirectSampled);
-  float total = weighTexels();
+  float even, total = weighTexels(even);
   if (!(total > 0.0)) return sum;
   for (uint ray = gl_LocalInvocationIndex; ray < push.correctionRays; ray += kGroup) {
     Sampler sampler_ = makeSampler(key, ray, push.seed);
@@ -75,7 +91,9 @@ IndirectTexel correction(Site s, uint key) {
     bool known;
     vec3 truth = radianceAlong(s, dirW, sampler_.key ^ ray, known);
     if (!known) continue;
-    float scale = total / (float(push.correctionRays) * importance[i]);
+    float scale = total / (float(push.correctionRays) * weightOf(i));
+    float brightest = kMostQuotient * (even + brightestAround(i));
+    truth *= min(1.0, brightest / max(luminance(truth), 1e-30));
     addLight(sum, s, q, truth * scale);
     vec3 middle = microTexel(i, push.microSize);
     addLight(sum, s, middle, seen(i, toWorldOf(s, normalize(middle))).rgb * -scale);

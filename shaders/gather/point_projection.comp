@@ -54,7 +54,7 @@ shared uint micro[kMostTexels];             // nearest: squared distance in the 
 shared uint projected[kMostProjections];    // 2 * point + side of each projection; cluster of each sample before that
 shared float sumOfLanes[kMostGroup];
 #ifdef LIMN_GATHER_CORRECT
-shared float weightOfLanes[kMostGroup];
+shared float factorsOfLanes[kMostGroup];
 #endif
 
 #include "shaders/gather/gather_site.glsl"
@@ -255,15 +255,15 @@ IndirectTexel reduce(Site s) {
     vec3 q = microTexel(i, push.microSize), radiance = seen(i, toWorldOf(s, normalize(q))).rgb;
     float factor = addLight(sum, s, q, radiance);
 #ifdef LIMN_GATHER_CORRECT
-    importance[i] = factor * luminance(radiance);
+    importance[i] = luminance(radiance);
     clusterRun[i] = floatBitsToUint(factor);
-    brought += importance[i];
+    brought += factor * importance[i];
     factors += factor;
 #endif
   }
 #ifdef LIMN_GATHER_CORRECT
   sumOfLanes[gl_LocalInvocationIndex] = brought;
-  weightOfLanes[gl_LocalInvocationIndex] = factors;
+  factorsOfLanes[gl_LocalInvocationIndex] = factors;
 #endif
   return sum;
 }
