@@ -24,6 +24,7 @@ _LEFT = ((552.8, 0.0, 0.0), (549.6, 0.0, 559.2), (556.0, 548.8, 559.2), (556.0, 
 _LIGHT = ((343.0, 548.8, 227.0), (343.0, 548.8, 332.0), (213.0, 548.8, 332.0), (213.0, 548.8, 227.0))
 _SHORT = ((130.0, 0.0, 65.0), (82.0, 0.0, 225.0), (240.0, 0.0, 272.0), (290.0, 0.0, 114.0))
 _TALL = ((423.0, 0.0, 247.0), (265.0, 0.0, 296.0), (314.0, 0.0, 456.0), (472.0, 0.0, 406.0))
+_TRAY_TOP, _TRAY_HEIGHT = 400.0, 30.0
 _HEIGHT = {"Short block": 165.0, "Tall block": 330.0}
 
 
@@ -46,9 +47,9 @@ def ceiling_with_hole():
     return mesh
 
 
-def walls(area_light):
+def walls(lamp_in_ceiling):
     """Name, mesh and material key of the five walls."""
-    ceiling = ceiling_with_hole() if area_light else shapes.quad(*metres(_CEILING))
+    ceiling = ceiling_with_hole() if lamp_in_ceiling else shapes.quad(*metres(_CEILING))
     return [
         ("Floor", shapes.quad(*metres(_FLOOR)), "white"),
         ("Ceiling", ceiling, "white"),
@@ -61,6 +62,14 @@ def walls(area_light):
 def block(name):
     base = metres(_SHORT if name == "Short block" else _TALL)
     return shapes.prism(base, _HEIGHT[name] * MM)
+
+
+def tray():
+    """Open above, as large as the light: its sides and its bottom. And the corners of what closes it, facing up."""
+    top = metres([(x, _TRAY_TOP, z) for x, _, z in reversed(_LIGHT)])
+    bottom = [vec.sub(p, (0.0, _TRAY_HEIGHT * MM, 0.0)) for p in top]
+    sides = [shapes.quad(bottom[i], bottom[(i + 1) % 4], top[(i + 1) % 4], top[i]) for i in range(4)]
+    return shapes.merged([shapes.quad(*reversed(bottom))] + sides), top
 
 
 def add_camera(scene, transform=lambda p: p):
@@ -78,22 +87,28 @@ def wall_materials():
     }
 
 
-def cornell(name, area_light=True, overrides=None, blocks=True, extra=(), lamp=lambda corners: shapes.quad(*corners)):
+def cornell(
+    name, area_light=True, overrides=None, blocks=True, extra=(), lamp=lambda corners: shapes.quad(*corners), uplight=False
+):
     """A Cornell box. overrides: material for a wall's or block's name; extra: further (name, mesh, material,
-    translation); lamp: mesh of the area light from its corners."""
+    translation); lamp: mesh of the area light from its corners; uplight: the light lies in a tray and shines at the
+    ceiling."""
     scene = Builder(name)
     palette = {key: scene.add_material(m) for key, m in wall_materials().items()}
     overrides = {key: scene.add_material(m) for key, m in (overrides or {}).items()}
-    parts = walls(area_light) + (
+    parts = walls(area_light and not uplight) + (
         [("Short block", block("Short block"), "white"), ("Tall block", block("Tall block"), "white")] if blocks else []
     )
     for part, mesh, key in parts:
         scene.add_object(part, mesh, overrides.get(part, palette[key]))
     for part, mesh, material, translation in extra:
         scene.add_object(part, mesh, scene.add_material(material), translation=translation)
+    shade, corners = tray() if uplight else (None, metres(_LIGHT))
+    if uplight:
+        scene.add_object("Tray", shade, palette["white"])
     if area_light:
         scene.add_object(
-            "Light", lamp(metres(_LIGHT)), scene.add_material(materials.emitter("Light", EMISSION))
+            "Light", lamp(corners), scene.add_material(materials.emitter("Light", EMISSION))
         )
     else:
         scene.add_light("Light", "point", POINT_INTENSITY, POINT_COLOUR, POINT_POSITION)
@@ -107,6 +122,11 @@ def cornell_box():
 
 def cornell_point():
     return cornell("cornell-point", area_light=False)
+
+
+def cornell_indirect():
+    """Lit by bounces alone: the area light lies in a tray and shines at the ceiling."""
+    return cornell("cornell-indirect", uplight=True)
 
 
 def cornell_glossy():
@@ -146,6 +166,7 @@ def cornell_caustic():
 SCENES = {
     "cornell-box": cornell_box,
     "cornell-point": cornell_point,
+    "cornell-indirect": cornell_indirect,
     "cornell-glossy": cornell_glossy,
     "cornell-caustic": cornell_caustic,
 }

@@ -27,6 +27,7 @@ WIDTH = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 TRIANGLES = {
     "cornell-box": 38,
     "cornell-point": 30,
+    "cornell-indirect": 42,
     "cornell-glossy": 38,
     "cornell-caustic": 2 * 2 * 128 * 63 + 18,
     "furnace-diffuse-05": 2 * 16 * 7 + 2 * 64 * 31,
