@@ -73,23 +73,46 @@ PointLightCache::PointLightCache()
       m_paths("trace_points", sizeof(shared::TracePointsPush), &constants),
       m_compose("compose_points", sizeof(shared::ComposePush), &constants) {}
 
-Result<void> PointLightCache::resize(vk::Device& device, PointLayout layout, bool lobes) {
+Result<PointLightCache::Buffers> PointLightCache::makeBuffers(vk::Device& device, size_t points, size_t lobes) {
+  auto light = makeBuffer(device, "points.light", points * sizeof(shared::PointLight));
+  if (!light) return light.error();
+  auto radiance = makeBuffer(device, "points.radiance", points * 2 * sizeof(glm::vec4), true);
+  if (!radiance) return radiance.error();
+  auto kept = makeBuffer(device, "points.lobes", lobes * sizeof(shared::PointLobes));
+  if (!kept) return kept.error();
+  return Buffers{light.take(), radiance.take(), kept.take()};
+}
+
+Result<void> PointLightCache::resize(vk::Device& device, PointLayout layout, bool lobes, bool refined) {
   if (!m_counters)
     if (auto made = makeCounters(device); !made) return made;
-  if (m_light && layout == m_layout && lobes == m_lobesKept) return {};
+  if (light() && layout == m_layout && lobes == m_lobesKept && refined == m_refinedKept) return {};
+  m_buffers = {};
   const size_t count = std::max<size_t>(layout.count(), 1);
-  auto light = makeBuffer(device, "points.light", count * sizeof(shared::PointLight));
-  if (!light) return light.error();
-  auto radiance = makeBuffer(device, "points.radiance", count * 2 * sizeof(glm::vec4), true);
-  if (!radiance) return radiance.error();
-  auto kept = makeBuffer(device, "points.lobes", (lobes ? count : 1) * sizeof(shared::PointLobes));
-  if (!kept) return kept.error();
-  m_light = light.take();
-  m_radiance = radiance.take();
-  m_lobes = kept.take();
+  for (size_t version = 0; version < (refined ? 2 : 1); ++version) {
+    auto made = makeBuffers(device, count, lobes ? count : 1);
+    if (!made) return made.error();
+    m_buffers[version] = made.take();
+  }
   m_layout = layout;
   m_lobesKept = lobes;
+  m_refinedKept = refined;
+  select(PointLightVersion::first);
   return {};
+}
+
+void PointLightCache::select(PointLightVersion version) {
+  LIMN_CHECK(version == PointLightVersion::first || m_refinedKept);
+  m_selected = version;
+}
+
+void PointLightCache::recordCopy(vk::CommandRecorder& recorder) const {
+  LIMN_CHECK(m_refinedKept);
+  for (const auto buffer : {&Buffers::light, &Buffers::radiance, &Buffers::lobes}) {
+    const vk::Buffer& first = m_buffers[0].*buffer;
+    recorder.copyBuffer(first, 0, m_buffers[1].*buffer, 0, first.size());
+  }
+  recorder.barrier();
 }
 
 Result<void> PointLightCache::makeCounters(vk::Device& device) {
@@ -107,19 +130,19 @@ Result<void> PointLightCache::makeCounters(vk::Device& device) {
 std::vector<vk::Binding> PointLightCache::relightBindings(const PointLightContext& context) const {
   auto all = gpu::joined(gpu::joined(context.scene.bindings(), context.points), context.tracer.bindings());
   return gpu::joined(std::move(all),
-                     {vk::storage(BINDING_POINT_LIGHT, m_light), vk::storage(BINDING_POINT_LOBES, m_lobes),
+                     {vk::storage(BINDING_POINT_LIGHT, light()), vk::storage(BINDING_POINT_LOBES, lobes()),
                       vk::storage(BINDING_COUNTERS, m_counters)});
 }
 
 std::vector<vk::Binding> PointLightCache::composeBindings(const PointLightContext& context) const {
   auto all = gpu::joined(context.scene.bindings(), context.points);
   return gpu::joined(std::move(all),
-                     {vk::storage(BINDING_POINT_LIGHT, m_light), vk::storage(BINDING_POINT_LOBES, m_lobes),
-                      vk::storage(BINDING_POINT_RADIANCE_OUT, m_radiance)});
+                     {vk::storage(BINDING_POINT_LIGHT, light()), vk::storage(BINDING_POINT_LOBES, lobes()),
+                      vk::storage(BINDING_POINT_RADIANCE_OUT, radiance())});
 }
 
 Result<void> PointLightCache::prepare(const PointLightContext& context, const SceneNeeds& needs, bool mayCompile) {
-  LIMN_CHECK(bool(m_light));
+  LIMN_CHECK(bool(light()));
   if (auto done = m_relight.prepare(context.device, relightBindings(context), needs, mayCompile); !done) return done;
   if (auto done = m_paths.prepare(context.device, relightBindings(context), needs, mayCompile); !done) return done;
   return m_compose.prepare(context.device, composeBindings(context), needs, mayCompile);
@@ -127,7 +150,7 @@ Result<void> PointLightCache::prepare(const PointLightContext& context, const Sc
 
 std::vector<vk::Binding> PointLightCache::spreadBindings(const PointLightContext& context,
                                                          const std::vector<vk::Binding>& grid) const {
-  return gpu::joined(gpu::joined(context.points, grid), {vk::storage(BINDING_POINT_LIGHT, m_light)});
+  return gpu::joined(gpu::joined(context.points, grid), {vk::storage(BINDING_POINT_LIGHT, light())});
 }
 
 Result<void> PointLightCache::prepareSpread(const PointLightContext& context, const std::vector<vk::Binding>& grid) {
@@ -140,7 +163,7 @@ Result<void> PointLightCache::prepareSpread(const PointLightContext& context, co
 }
 
 void PointLightCache::recordClear(vk::CommandRecorder& recorder) const {
-  for (const vk::Buffer* buffer : {&m_light, &m_radiance, &m_lobes}) recorder.fillBuffer(*buffer, 0, 0, 0);
+  for (const vk::Buffer* buffer : {&light(), &radiance(), &lobes()}) recorder.fillBuffer(*buffer, 0, 0, 0);
   recorder.barrier();
 }
 
@@ -204,8 +227,8 @@ void PointLightCache::recordSpread(vk::CommandRecorder& recorder, const PointLig
 }
 
 std::vector<vk::Binding> PointLightCache::bindings() const {
-  return {vk::storage(BINDING_POINT_LIGHT, m_light), vk::texel(BINDING_POINT_RADIANCE, m_radiance),
-          vk::storage(BINDING_POINT_LOBES, m_lobes)};
+  return {vk::storage(BINDING_POINT_LIGHT, light()), vk::texel(BINDING_POINT_RADIANCE, radiance()),
+          vk::storage(BINDING_POINT_LOBES, lobes())};
 }
 
 uint64_t PointLightCache::raysTraced() const {

@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,9 @@ struct SlotRange {
   uint32_t first = 0, end = 0;
 };
 
+/// Light that is there soon, and light from more samples: two sets of buffers.
+enum class PointLightVersion : uint32_t { first, refined };
+
 /// One share of next-event samples of points.
 struct RelightWork {
   SlotRange slots;
@@ -58,9 +62,12 @@ class PointLightCache {
  public:
   PointLightCache();
 
-  /// Makes room, for one point at least; contents are undefined until recordClear(). Nothing happens where the room is
-  /// right already. Errors: "limit", "out-of-memory", "device-lost".
-  Result<void> resize(vk::Device& device, PointLayout layout, bool lobes);
+  /// Makes room, for one point at least, and for refined light where it is told; contents are undefined until recordClear()
+  /// and recordCopy(). Nothing happens where the room is right already. Errors: "limit", "out-of-memory", "device-lost".
+  Result<void> resize(vk::Device& device, PointLayout layout, bool lobes, bool refined = false);
+
+  /// What everything below works on from now on; at first that is PointLightVersion::first.
+  void select(PointLightVersion version);
 
   /// Pipelines for what the scene needs, compiled and warm; made the first time and where `mayCompile` says that a stop
   /// is no matter. After resize(). Errors: "device", "out-of-memory", "device-lost".
@@ -72,6 +79,9 @@ class PointLightCache {
 
   /// Sets all light to zero, that of gathers too.
   void recordClear(vk::CommandRecorder& recorder) const;
+
+  /// Copies the first version to the refined one. Ends with a barrier.
+  void recordCopy(vk::CommandRecorder& recorder) const;
 
   /// Takes direct-light samples of the points and adds them to their means; indirect light stays. Ends with a barrier.
   void recordRelight(vk::CommandRecorder& recorder, const PointLightContext& context, const RelightWork& work) const;
@@ -91,9 +101,9 @@ class PointLightCache {
   std::vector<vk::Binding> bindings() const;
   bool hasLobes() const { return m_lobesKept; }
   const PointLayout& layout() const { return m_layout; }
-  const vk::Buffer& light() const { return m_light; }        ///< shared::PointLight, one a point
-  const vk::Buffer& radiance() const { return m_radiance; }  ///< vec4, two a point
-  const vk::Buffer& lobes() const { return m_lobes; }        ///< shared::PointLobes
+  const vk::Buffer& light() const { return now().light; }        ///< shared::PointLight, one a point
+  const vk::Buffer& radiance() const { return now().radiance; }  ///< vec4, two a point
+  const vk::Buffer& lobes() const { return now().lobes; }        ///< shared::PointLobes
 
   /// The worse of those that depend on the scene's needs, as of the last prepare().
   gpu::PipelineVariant pipelines() const { return std::max(m_relight.variant(), m_compose.variant()); }
@@ -103,6 +113,11 @@ class PointLightCache {
   uint64_t discardedSamples() const;
 
  private:
+  struct Buffers {
+    vk::Buffer light, radiance, lobes;
+  };
+  static Result<Buffers> makeBuffers(vk::Device& device, size_t points, size_t lobes);
+  const Buffers& now() const { return m_buffers[size_t(m_selected)]; }
   Result<void> makeCounters(vk::Device& device);
   std::vector<vk::Binding> relightBindings(const PointLightContext& context) const;
   std::vector<vk::Binding> composeBindings(const PointLightContext& context) const;
@@ -110,8 +125,10 @@ class PointLightCache {
   uint32_t slotsOf(SlotRange slots) const;
 
   PointLayout m_layout;
-  bool m_lobesKept = false;
-  vk::Buffer m_light, m_radiance, m_lobes, m_counters;
+  bool m_lobesKept = false, m_refinedKept = false;
+  std::array<Buffers, 2> m_buffers;  ///< by PointLightVersion
+  PointLightVersion m_selected = PointLightVersion::first;
+  vk::Buffer m_counters;
   gpu::TailoredPass m_relight, m_paths, m_compose;
   gpu::Pass m_spread;
 };

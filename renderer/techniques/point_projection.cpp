@@ -69,9 +69,10 @@ void PointProjectionTechnique::setParameter(const std::string& name, double valu
 }
 
 void PointProjectionTechnique::forgetLight() {
-  m_lit = m_previewLit = false;
+  m_lit = m_previewLit = m_refined = false;
   m_litSlots = 0;
   m_lighting.clear();
+  m_refining.clear();
 }
 
 Result<void> PointProjectionTechnique::makeBuffers(const TechniqueContext& context) {
@@ -120,8 +121,7 @@ Result<void> PointProjectionTechnique::updatePoints(const TechniqueContext& cont
   m_lightingRevision = context.lightingRevision;
   m_pointsKnown = true;
   forgetLight();
-  const PointLayout layout = m_points.count() > 0 ? PointLayout{m_points.clusterCount(), m_points.clusterSize()} : PointLayout{1, 1};
-  if (auto made = m_light.resize(context.device, layout, context.allNeeds || hasGlossySources(context.description)); !made) return made;
+  const PointLayout layout = layoutOfPoints();
   const uint32_t sides = 2 * layout.clusterCount;
   m_bounceSlots = std::min(std::max(1u, m_settings.bouncePoints / layout.clusterCount), layout.clusterSize);
   auto list = makeBuffer(context.device, "pointProjection.bounceList", size_t(sides) * m_bounceSlots * sizeof(uint32_t));
@@ -129,6 +129,10 @@ Result<void> PointProjectionTechnique::updatePoints(const TechniqueContext& cont
   m_bounceList = list.take();
   if (auto done = m_nearestGrid.update(context.device, m_points, std::min(kBounceSlots, m_points.clusterSize()), kNearestReach); !done) return done;
   return m_pointGrid.update(context.device, m_points, std::min(m_bounceSlots, m_points.clusterSize()));
+}
+
+PointLayout PointProjectionTechnique::layoutOfPoints() const {
+  return m_points.count() > 0 ? PointLayout{m_points.clusterCount(), m_points.clusterSize()} : PointLayout{1, 1};
 }
 
 PointLightContext PointProjectionTechnique::lightContext(const TechniqueContext& context) const {
@@ -171,6 +175,8 @@ Result<void> PointProjectionTechnique::prepare(const TechniqueContext& context, 
   m_needs = needs;
   if (auto done = makeBuffers(context); !done) return done;
   if (auto done = updatePoints(context); !done) return done;
+  const bool sources = context.allNeeds || hasGlossySources(context.description);
+  if (auto made = m_light.resize(context.device, layoutOfPoints(), sources, refines()); !made) return made;
   const PointLightContext lighting = lightContext(context);
   if (auto done = m_light.prepare(lighting, needs, mayCompile); !done) return done;
   if (auto done = m_light.prepareSpread(lighting, m_pointGrid.bindings()); !done) return done;
@@ -187,10 +193,12 @@ Result<void> PointProjectionTechnique::restart(const TechniqueContext& context, 
   m_tasks.clear();
   m_tasks.forgetTimes();
   m_lighting.forgetTimes();
+  m_refining.forgetTimes();
   m_pass = m_shaded = 0;
   m_levelStride = m_levelCount = m_levelDone = m_lateTurn = 0;
   m_fillStride = PixelOrder::kStrides[0];
   m_converged = m_preview = false;
+  m_light.select(PointLightVersion::first);
   const bool dark = !m_lit && m_lighting.empty();
   if (gathers()) planPreview();
   else planPass(0);
@@ -205,6 +213,7 @@ Result<Progress> PointProjectionTechnique::advance(const TechniqueContext& conte
   if (m_pass >= sampleLimit(context)) m_converged = true;
   if (m_converged) return progress();
   if (m_tasks.empty()) return light(context, seconds);
+  if (m_pass == kRefinedPass && refines() && !m_refined) return refine(context, seconds);
   if (auto done = m_tasks.advance(context, seconds); !done) return done.error();
   if (!m_tasks.empty() || m_preview) return progress();
   ++m_pass;
@@ -221,6 +230,14 @@ Result<Progress> PointProjectionTechnique::light(const TechniqueContext& context
   m_lit = true;
   m_preview = false;
   planPass(0);
+  return progress();
+}
+
+// Before the first pass that gathers by it. It goes on where a new view interrupted it.
+Result<Progress> PointProjectionTechnique::refine(const TechniqueContext& context, double seconds) {
+  if (m_refining.empty()) planRefining();
+  if (auto done = m_refining.advance(context, seconds); !done) return done.error();
+  m_refined = m_refining.empty();
   return progress();
 }
 
@@ -270,7 +287,7 @@ gpu::PipelineVariant PointProjectionTechnique::pipelines() const {
 
 std::vector<StageTime> PointProjectionTechnique::stages() const {
   std::vector<StageTime> all = m_pointTimes;
-  for (const TaskQueue* queue : {&m_tasks, &m_lighting})
+  for (const TaskQueue* queue : {&m_tasks, &m_lighting, &m_refining})
     for (const StageTime& time : queue->times()) addTime(all, time);
   return all;
 }

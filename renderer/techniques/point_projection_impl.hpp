@@ -22,8 +22,11 @@ struct PointProjectionWork {
   uint64_t pixelsGathered = 0;
 };
 
-/// Points of every cluster that gathers at points project, the first ones.
+/// Points of every cluster that the first passes project, and all gathers at points: the first ones.
 constexpr uint32_t kBounceSlots = 128;
+/// The first pass that gathers by refined light. Those between pass 0 and it only take a sample of direct light: its noise is
+/// most of what is wrong by then.
+constexpr uint32_t kRefinedPass = 4;
 
 /// Values of the announced parameters.
 struct PointProjectionSettings {
@@ -56,8 +59,10 @@ class PointProjectionTechnique final : public Technique {
   // point_projection.cpp
   void forgetLight();
   Result<Progress> light(const TechniqueContext& context, double seconds);
+  Result<Progress> refine(const TechniqueContext& context, double seconds);
   Result<void> makeBuffers(const TechniqueContext& context);
   Result<void> updatePoints(const TechniqueContext& context);
+  PointLayout layoutOfPoints() const;
   PointLightContext lightContext(const TechniqueContext& context) const;
   std::vector<vk::Binding> sceneBindings(const TechniqueContext& context, const vk::Buffer& list) const;
   std::vector<vk::Binding> pointBindings(const TechniqueContext& context, const vk::Buffer& list) const;
@@ -69,6 +74,9 @@ class PointProjectionTechnique final : public Technique {
   ReconstructBuffers reconstruction() const { return {m_siteBuffer, m_indirect, m_filtered}; }
   uint32_t sampleLimit(const TechniqueContext& c) const { return c.sampleLimit ? c.sampleLimit : m_settings.maxSamples; }
   bool gathers() const { return m_settings.bounces > 0 && m_points.count() > 0; }
+  /// The paper's own method lights all points as well as it can before it gathers.
+  bool refines() const { return gathers() && m_settings.paths > 0; }
+  uint32_t slotsUsed() const { return m_pass >= kRefinedPass ? m_light.layout().clusterSize : m_litSlots; }
   Progress progress() const;
 
   // point_projection_plan.cpp
@@ -76,11 +84,15 @@ class PointProjectionTechnique final : public Technique {
   void pushPreviewLight();
   void planPass(uint32_t pass);
   void planLighting();
+  void planRefining();
   void pushCoarsePicture();
+  void pushStartGrid();
+  void pushForget();
+  void pushLevels();
   void planBounces();
   uint32_t bouncesAtPoints() const;
   void pushRelight(TaskQueue& queue, SlotRange slots, uint32_t samples, WorkRate& rate);
-  void pushPaths(TaskQueue& queue, uint32_t samples, uint32_t endSlot);
+  void pushPaths(TaskQueue& queue, uint32_t samples, uint32_t samplesBefore, uint32_t endSlot);
   void pushSpread(TaskQueue& queue, uint32_t endSlot, bool compose);
   void pushBounce(bool first, uint32_t endSlot, bool compose);
   void pushSites(uint32_t from, uint32_t end);
@@ -95,7 +107,7 @@ class PointProjectionTechnique final : public Technique {
 
   // point_projection_work.cpp
   Result<void> relight(const TechniqueContext& context, SlotRange slots, uint32_t samples);
-  Result<void> paths(const TechniqueContext& context, SlotRange slots, uint32_t samples);
+  Result<void> paths(const TechniqueContext& context, SlotRange slots, uint32_t samples, uint32_t samplesBefore);
   Result<uint32_t> listBounceSites(const TechniqueContext& context, bool first);
   Result<uint32_t> beginSpread(const TechniqueContext& context, uint32_t endSlot, bool compose);
   Result<void> spread(const TechniqueContext& context, SlotRange slots, bool compose);
@@ -126,12 +138,14 @@ class PointProjectionTechnique final : public Technique {
   bool m_useFiltered = false;          ///< m_filtered holds what m_indirect does, filtered
 
   TaskQueue m_tasks;     ///< of the present pass
-  TaskQueue m_lighting;  ///< all light of all points; goes on where a new view interrupts it
+  TaskQueue m_lighting;  ///< first light of points; goes on where a new view interrupts it
+  TaskQueue m_refining;  ///< light of all points from more samples; the same
   WorkRate m_previewRate{1e4}, m_relightRate{3e3}, m_pathRate{1e2}, m_bounceRate{1e4}, m_spreadRate{1e3}, m_siteRate{1e6},
       m_previewGatherRate{2e4}, m_gatherRate{8e3}, m_shadeRate{5e5}, m_filterRate{2e3};
   uint64_t m_lightingRevision = 0;
   bool m_pointsKnown = false;  ///< m_points are those of the settings
-  bool m_lit = false;          ///< the points carry all their light
+  bool m_lit = false;          ///< the first points carry their first light
+  bool m_refined = false;      ///< all points carry refined light
   bool m_previewLit = false;   ///< a first part of them carries some of it
   uint32_t m_litSlots = 0;     ///< of every cluster, lit so far, the first ones
   uint32_t m_round = 0;        ///< of the present gathers

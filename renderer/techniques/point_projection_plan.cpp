@@ -10,8 +10,8 @@ namespace {
 
 /// Slots of every cluster that the first picture after a change of light is made of.
 constexpr uint32_t kPreviewSlots = 32, kPreviewPaths = 1;
-/// Passes after the first that only take a sample of direct light: its noise is most of what is wrong by then.
-constexpr uint32_t kDirectPasses = 3;
+/// Paths of a point whose light is refined, of one whose light is not.
+constexpr uint32_t kRefinedPaths = 4;
 /// A later pass gathers at one pixel of so many, of a level at no fewer than these: a few times as long as its samples of direct
 /// light take, since interpolated light is what is wrong longest where a scene is intricate.
 constexpr uint32_t kPixelsPerGather = 64, kLeastLevelGathers = 256;
@@ -39,7 +39,7 @@ void PointProjectionTechnique::planPreview() {
 void PointProjectionTechnique::pushPreviewLight() {
   const uint32_t slots = std::min(kPreviewSlots, m_light.layout().clusterSize);
   if (!m_previewLit) pushRelight(m_tasks, {0, slots}, 1, m_previewRate);
-  if (!m_previewLit && bouncesAtPoints() > 0 && m_settings.paths > 0) pushPaths(m_tasks, kPreviewPaths, slots);
+  if (!m_previewLit && bouncesAtPoints() > 0 && m_settings.paths > 0) pushPaths(m_tasks, kPreviewPaths, 0, slots);
   m_tasks.push({"preview lit", nullptr, [this](const TechniqueContext&) -> Result<uint32_t> {
                   m_previewLit = true;
                   if (m_lighting.empty()) planLighting();
@@ -47,23 +47,29 @@ void PointProjectionTechnique::pushPreviewLight() {
                 }, {}});
 }
 
-// Pass 0 gathers a coarse grid. After a few that gather nothing, others refine to every 4th, 2nd and each pixel, a part of a level
-// each; then what was interpolated is gathered, share by share, and then every pixel again. All take a sample of direct light.
+// Pass 0 gathers a coarse grid. After a few that gather nothing, one gathers it again by refined light, and others refine to every
+// 4th, 2nd and each pixel, a part of a level each; then what was interpolated is gathered, share by share, and then every pixel
+// again. All take a sample of direct light.
 void PointProjectionTechnique::planPass(uint32_t pass) {
   const auto pixels = uint32_t(m_pixelOrder.pixels.size());
   // Light that was looked up before counts for less when a level is complete, and each time that the number of samples has
   // doubled: most of them always know what the latest gathers know.
   m_dropLookedUp = pass == 0 || std::has_single_bit(pass);
+  if (pass >= kRefinedPass && refines()) m_light.select(PointLightVersion::refined);
   if (!gathers()) return pushShade(pixels, pass == 0);
   if (pass == 0) {
     pushCoarsePicture();
     pushSites(m_pixelOrder.levelEnd[0], pixels);
-    for (uint32_t stride = m_settings.startGrid / 2; stride >= PixelOrder::kStrides[0]; stride /= 2) pushLevel(stride);
-    pushFill(PixelOrder::kStrides[0] / 2);
-    m_levelStride = std::min(m_settings.startGrid / 2, PixelOrder::kStrides[1]);
-  } else if (pass > kDirectPasses && m_levelStride > 0) {
+    pushLevels();
+  } else if (pass == kRefinedPass && refines()) {
+    m_dropLookedUp = true;
+    pushForget();
+    pushStartGrid();
+    pushFill(m_settings.startGrid / 2, PixelOrder::kStrides[0]);
+    pushLevels();
+  } else if (pass >= kRefinedPass && m_levelStride > 0) {
     pushLevelPart();
-  } else if (pass > kDirectPasses) {
+  } else if (pass >= kRefinedPass) {
     pushLateShare(m_lateTurn++);
     pushFilter();
   }
@@ -73,6 +79,12 @@ void PointProjectionTechnique::planPass(uint32_t pass) {
 // A picture of every 8th pixel, as soon as the start grid is gathered.
 void PointProjectionTechnique::pushCoarsePicture() {
   pushSites(0, m_pixelOrder.levelEnd[0]);
+  pushStartGrid();
+  pushFill(m_settings.startGrid / 2, PixelOrder::kStrides[0]);
+  pushShade(m_pixelOrder.levelEnd[0], true);
+}
+
+void PointProjectionTechnique::pushStartGrid() {
   pushGather("start grid", [this](const TechniqueContext& c) {
     m_round = 0;
     return m_grid.selectGrid(c.device, placement(), m_settings.startGrid);
@@ -83,8 +95,22 @@ void PointProjectionTechnique::pushCoarsePicture() {
                   m_meanLuminance = float(*mean);
                   return 0u;
                 }, {}});
-  pushFill(m_settings.startGrid / 2, PixelOrder::kStrides[0]);
-  pushShade(m_pixelOrder.levelEnd[0], true);
+}
+
+// What the gathers so far brought, when better ones follow.
+void PointProjectionTechnique::pushForget() {
+  m_tasks.push({"forget", nullptr, [this](const TechniqueContext& c) -> Result<uint32_t> {
+                  auto done = gpu::runNow(c.device, [&](vk::CommandRecorder& r) { r.fillBuffer(m_indirect, 0, 0, 0); });
+                  if (!done) return done.error();
+                  return 0u;
+                }, {}});
+}
+
+// Every 8th pixel, or fewer, where light is not coherent; the others are filled.
+void PointProjectionTechnique::pushLevels() {
+  for (uint32_t stride = m_settings.startGrid / 2; stride >= PixelOrder::kStrides[0]; stride /= 2) pushLevel(stride);
+  pushFill(PixelOrder::kStrides[0] / 2);
+  m_levelStride = std::min(m_settings.startGrid / 2, PixelOrder::kStrides[1]);
 }
 
 // The last bounce arrives at the pixels; the points need it only where rays through sharp lobes end at them.
@@ -92,12 +118,26 @@ uint32_t PointProjectionTechnique::bouncesAtPoints() const {
   return m_needs.sharp ? m_settings.bounces : std::max(m_settings.bounces, 1u) - 1u;
 }
 
-// All light of all points: direct, then what paths find at some of them, spread over the others.
+// Light of the first points: direct, then what paths find at some of them, spread over the others.
 void PointProjectionTechnique::planLighting() {
-  const uint32_t size = m_light.layout().clusterSize;
-  pushRelight(m_lighting, {0, size}, m_settings.relightSamples, m_relightRate);
+  const uint32_t size = m_light.layout().clusterSize, first = refines() ? std::min(kBounceSlots, size) : size;
+  pushRelight(m_lighting, {0, first}, m_settings.relightSamples, m_relightRate);
   if (m_settings.paths == 0) return planBounces();
-  if (bouncesAtPoints() > 0) pushPaths(m_lighting, m_settings.paths, size);
+  if (bouncesAtPoints() > 0) pushPaths(m_lighting, m_settings.paths, 0, first);
+}
+
+// Light of all points, and more paths where there were some. The first light is kept: the first passes after a new view are to be
+// the same as they were.
+void PointProjectionTechnique::planRefining() {
+  const uint32_t size = m_light.layout().clusterSize;
+  m_refining.push({"refine", nullptr, [this](const TechniqueContext& c) -> Result<uint32_t> {
+                     auto done = gpu::runNow(c.device, [&](vk::CommandRecorder& r) { m_light.recordCopy(r); });
+                     if (!done) return done.error();
+                     return 0u;
+                   }, {}});
+  pushRelight(m_refining, {std::min(kBounceSlots, size), size}, m_settings.relightSamples, m_relightRate);
+  const uint32_t paths = m_settings.paths;
+  if (bouncesAtPoints() > 0) pushPaths(m_refining, (kRefinedPaths - 1) * paths, paths, size);
 }
 
 // As in the paper: one bounce after the other, gathered at points as it is at pixels.
@@ -112,15 +152,15 @@ void PointProjectionTechnique::planBounces() {
 
 void PointProjectionTechnique::pushRelight(TaskQueue& queue, SlotRange slots, uint32_t samples, WorkRate& rate) {
   queue.push({"relight", &rate, [slots](const TechniqueContext&) -> Result<uint32_t> { return slots.end - slots.first; },
-              [this, samples](const TechniqueContext& c, uint32_t first, uint32_t count) {
-                return relight(c, {first, first + count}, samples);
+              [this, slots, samples](const TechniqueContext& c, uint32_t first, uint32_t count) {
+                return relight(c, {slots.first + first, slots.first + first + count}, samples);
               }});
 }
 
-void PointProjectionTechnique::pushPaths(TaskQueue& queue, uint32_t samples, uint32_t endSlot) {
+void PointProjectionTechnique::pushPaths(TaskQueue& queue, uint32_t samples, uint32_t samplesBefore, uint32_t endSlot) {
   queue.push({"paths", &m_pathRate, [this](const TechniqueContext&) -> Result<uint32_t> { return m_bounceSlots; },
-              [this, samples](const TechniqueContext& c, uint32_t first, uint32_t count) {
-                return paths(c, {first, first + count}, samples);
+              [this, samples, samplesBefore](const TechniqueContext& c, uint32_t first, uint32_t count) {
+                return paths(c, {first, first + count}, samples, samplesBefore);
               }});
   pushSpread(queue, endSlot, true);
 }

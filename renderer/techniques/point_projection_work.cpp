@@ -25,17 +25,17 @@ Result<void> PointProjectionTechnique::relight(const TechniqueContext& context, 
     m_light.recordRelight(r, lighting, {slots, samples, 0, context.seed});
     m_light.recordCompose(r, lighting, slots);
   });
-  m_litSlots = std::max(m_litSlots, slots.end);
+  if (!m_lit) m_litSlots = std::max(m_litSlots, slots.end);
   m_work.slotsLit += slots.end - slots.first;
   return done;
 }
 
 // One slot of every cluster an item, both sides.
-Result<void> PointProjectionTechnique::paths(const TechniqueContext& context, SlotRange slots, uint32_t samples) {
+Result<void> PointProjectionTechnique::paths(const TechniqueContext& context, SlotRange slots, uint32_t samples, uint32_t samplesBefore) {
   const PointLightContext lighting = lightContext(context);
   m_work.pathSides += 2 * uint64_t(slots.end - slots.first) * m_points.clusterCount();
   return gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
-    m_light.recordPaths(r, lighting, {slots, samples, 0, bouncesAtPoints(), context.seed});
+    m_light.recordPaths(r, lighting, {slots, samples, samplesBefore, bouncesAtPoints(), context.seed});
   });
 }
 
@@ -46,7 +46,7 @@ Result<void> PointProjectionTechnique::sites(const TechniqueContext& context, ui
 }
 
 shared::PointProjectionPush PointProjectionTechnique::gatherPush(const TechniqueContext& context, uint32_t first, uint32_t count) const {
-  return {first, count, context.seed, m_round, m_settings.projections, m_points.clusterCount(), m_points.clusterSize(), m_litSlots,
+  return {first, count, context.seed, m_round, m_settings.projections, m_points.clusterCount(), m_points.clusterSize(), slotsUsed(),
           float(m_points.areaPerPoint()), m_settings.microSize, m_settings.correctionRays};
 }
 

@@ -58,15 +58,15 @@ uint64_t pointGridBytes(const PointLayout& layout, uint32_t slots) {
   return (shared::kPointGridInfoWords + std::bit_ceil(std::max<uint64_t>(inGrid, 8)) + 1 + inGrid) * kWord;
 }
 
-void addPoints(vk::MemoryUse& device, const PointLayout& layout, uint32_t bouncePoints, bool lobes) {
+void addPoints(vk::MemoryUse& device, const PointLayout& layout, uint32_t bouncePoints, bool lobes, bool refines) {
   const uint64_t points = layout.count();
   const uint32_t bounceSlots = std::min(std::max(1u, bouncePoints / layout.clusterCount), layout.clusterSize);
   const uint64_t inGrid = uint64_t(layout.clusterCount) * bounceSlots;
   device.add("surface-points", points * (sizeof(shared::SurfacePoint) + sizeof(shared::PointSite)) +
                                    pointGridBytes(layout, bounceSlots) +
                                    pointGridBytes(layout, std::min(kBounceSlots, layout.clusterSize)));
-  device.add("point-light", points * (sizeof(shared::PointLight) + 2 * sizeof(glm::vec4)) +
-                                (lobes ? points : 1) * sizeof(shared::PointLobes) + kCounterBytes);
+  const uint64_t light = points * (sizeof(shared::PointLight) + 2 * sizeof(glm::vec4)) + (lobes ? points : 1) * sizeof(shared::PointLobes);
+  device.add("point-light", (refines ? 2 : 1) * light + kCounterBytes);
   device.add("point-projection", 2 * inGrid * kWord);  // both sides of those that gather bounces
 }
 
@@ -78,7 +78,8 @@ void addPointProjection(vk::MemoryUse& device, const Scene& scene, std::span<con
       2 * kWord + sizeof(shared::GatherSite) + 2 * sizeof(shared::IndirectTexel) + sizeof(glm::vec4);
   device.add("point-projection", pixels * ofPixel + kCounterBytes);
   const auto bouncePoints = uint32_t(valueOf(pointProjectionInfo(), "bouncePoints", settings));
-  addPoints(device, pointLayout(blocks, settings), bouncePoints, settings.allNeeds || hasGlossySources(scene));
+  const bool refines = valueOf(pointProjectionInfo(), "paths", settings) > 0.0 && valueOf(pointProjectionInfo(), "bounces", settings) > 0.0;
+  addPoints(device, pointLayout(blocks, settings), bouncePoints, settings.allNeeds || hasGlossySources(scene), refines);
   const uint64_t side = std::bit_ceil(std::max<uint64_t>({settings.width, settings.height, 2}));
   const uint64_t groups = (side * side + shared::kPlacementGroup - 1) / shared::kPlacementGroup;
   device.add("placement", (2 * groups + 2) * kWord);
