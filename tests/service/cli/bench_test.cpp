@@ -10,6 +10,7 @@
 #include "renderer/techniques/technique_info.hpp"
 #include "server/arguments.hpp"
 #include "tests/service/cli/run_program.hpp"
+#include "tests/support/environment_variable.hpp"
 
 namespace limn {
 namespace {
@@ -113,10 +114,8 @@ TEST_F(Bench, PlotsAreDrawnInBothFormats) {
 }
 
 TEST_F(Bench, WithoutGnuplotThePageSaysSo) {
-  const std::string path = std::getenv("PATH");
-  setenv("PATH", file("nowhere").c_str(), 1);
+  const test::EnvironmentVariable path("PATH", file("nowhere"));
   const test::ProgramRun done = run("plain", {"--scenes", kScene, "--steps", "2", "--seeds", "1"});
-  setenv("PATH", path.c_str(), 1);
   ASSERT_EQ(done.exitCode, 0) << done.err;
   EXPECT_THAT(done.out, HasSubstr("gnuplot is not installed"));
   EXPECT_THAT(test::readText(file("plain/index.html")), HasSubstr("gnuplot is not installed"));

@@ -7,6 +7,7 @@
 #include "renderer/film/exr.hpp"
 #include "tests/service/cli/run_program.hpp"
 #include "tests/service/service_fixture.hpp"
+#include "tests/support/environment_variable.hpp"
 
 namespace limn {
 namespace {
@@ -99,10 +100,9 @@ TEST_F(Flags, InfoTellsWhatTheFileHolds) {
 }
 
 TEST_F(Flags, ALostDeviceIsExit75) {
-  setenv("LIMN_LOSE_DEVICE_AT", "3", 1);
+  const test::EnvironmentVariable lose("LIMN_LOSE_DEVICE_AT", "3");
   const test::ProgramRun run =
       test::runProgram(LIMN_PROGRAM, {"render", kScene, "--output", file("lost.exr"), "--size", "24x20"});
-  unsetenv("LIMN_LOSE_DEVICE_AT");
   EXPECT_EQ(run.exitCode, 75);
   EXPECT_THAT(run.err, HasSubstr("limn render: vkQueueSubmit2 failed with VK_ERROR_DEVICE_LOST"));
   EXPECT_FALSE(std::filesystem::exists(file("lost.exr")));
