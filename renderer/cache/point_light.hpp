@@ -103,7 +103,6 @@ class PointLightCache {
   uint64_t discardedSamples() const;
 
  private:
-  Result<void> makeCounters(vk::Device& device);
   std::vector<vk::Binding> relightBindings(const PointLightContext& context) const;
   std::vector<vk::Binding> composeBindings(const PointLightContext& context) const;
   std::vector<vk::Binding> spreadBindings(const PointLightContext& context, const std::vector<vk::Binding>& grid) const;

@@ -5,6 +5,7 @@
 
 #include "renderer/base/check.hpp"
 #include "renderer/base/clock.hpp"
+#include "renderer/gpu/ray_counters.hpp"
 #include "renderer/techniques/audit_estimate.hpp"
 #include "renderer/techniques/path_tracing.hpp"
 #include "renderer/vk/transfer.hpp"
@@ -110,12 +111,9 @@ Result<void> Audit::makeBuffers(const TechniqueContext& context) {
   auto records = vk::Buffer::create(context.device, desc);
   if (!records) return records.error();
   m_records = records.take();
-  desc.name = "audit.counters";
-  desc.size = shared::kCounterWords * sizeof(uint32_t);
-  auto counters = vk::Buffer::create(context.device, desc);
+  auto counters = gpu::makeRayCounters(context.device, "audit", "audit.counters");
   if (!counters) return counters.error();
   m_counters = counters.take();
-  if (auto cleared = vk::fill(context.device, m_counters, 0, desc.size, 0); !cleared) return cleared;
   return makeList(context);
 }
 
