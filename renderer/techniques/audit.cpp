@@ -5,6 +5,7 @@
 
 #include "renderer/base/check.hpp"
 #include "renderer/base/clock.hpp"
+#include "renderer/base/mix.hpp"
 #include "renderer/gpu/ray_counters.hpp"
 #include "renderer/techniques/audit_estimate.hpp"
 #include "renderer/techniques/path_tracing.hpp"
@@ -31,12 +32,6 @@ constexpr uint32_t kSeedSalt = 0x3c6ef372u;
 
 uint32_t samplesOf(uint32_t level) { return kFirstSamples << level; }
 
-uint32_t mix(uint32_t x) {
-  x = (x ^ (x >> 16)) * 0x7feb352du;
-  x = (x ^ (x >> 15)) * 0x846ca68bu;
-  return x ^ (x >> 16);
-}
-
 /// Pixels [begin, end) along one side of tile `i` of `tiles`: all tiles are of one size, to a pixel.
 struct Range {
   uint32_t begin, end;
@@ -51,7 +46,8 @@ std::vector<uint32_t> drawPixels(Range across, Range down, uint32_t width, uint3
   for (uint32_t y = down.begin; y < down.end; ++y)
     for (uint32_t x = across.begin; x < across.end; ++x) pixels.push_back(y * width + x);
   const auto area = uint32_t(pixels.size()), drawn = std::min(area, kSets);
-  for (uint32_t i = 0; i < drawn; ++i) std::swap(pixels[i], pixels[i + mix(mix(pixels[i] ^ seed) + i) % (area - i)]);
+  for (uint32_t i = 0; i < drawn; ++i)
+    std::swap(pixels[i], pixels[i + mix32(mix32(pixels[i] ^ seed) + i) % (area - i)]);
   pixels.resize(drawn);
   return pixels;
 }
@@ -180,7 +176,7 @@ Result<void> Audit::advance(const TechniqueContext& context, double seconds) {
                                      .entryCount = m_piece.count,
                                      .firstSample = m_piece.samples,
                                      .sampleCount = kSamplesAtOnce,
-                                     .seed = mix(m_seed ^ kSeedSalt),
+                                     .seed = mix32(m_seed ^ kSeedSalt),
                                      .maxBounces = defaultOf("maxBounces"),
                                      .rouletteStart = defaultOf("rouletteStart"),
                                      .byEntry = 1};
