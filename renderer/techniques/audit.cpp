@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/base/check.hpp"
 #include "renderer/base/clock.hpp"
 #include "renderer/base/mix.hpp"
 #include "renderer/gpu/ray_counters.hpp"
 #include "renderer/techniques/audit_estimate.hpp"
+#include "renderer/techniques/parameter_default.hpp"
 #include "renderer/techniques/path_tracing.hpp"
 #include "renderer/vk/transfer.hpp"
 #include "shaders/shared/bindings.h"
@@ -58,13 +58,6 @@ struct TileGrid {
 TileGrid tilesOf(uint32_t width, uint32_t height) {
   const uint32_t side = std::max(kLeastTileSide, uint32_t(std::ceil(std::sqrt(double(width) * height / kTiles))));
   return {(width + side - 1) / side, (height + side - 1) / side};
-}
-
-uint32_t defaultOf(const char* parameter) {
-  for (const ParameterInfo& p : pathTracingInfo().parameters)
-    if (p.name == parameter) return uint32_t(p.defaultValue);
-  LIMN_CHECK(false);
-  return 0;
 }
 
 }  // namespace
@@ -177,8 +170,8 @@ Result<void> Audit::advance(const TechniqueContext& context, double seconds) {
                                      .firstSample = m_piece.samples,
                                      .sampleCount = kSamplesAtOnce,
                                      .seed = mix32(m_seed ^ kSeedSalt),
-                                     .maxBounces = defaultOf("maxBounces"),
-                                     .rouletteStart = defaultOf("rouletteStart"),
+                                     .maxBounces = uint32_t(defaultOf(pathTracingInfo(), "maxBounces")),
+                                     .rouletteStart = uint32_t(defaultOf(pathTracingInfo(), "rouletteStart")),
                                      .byEntry = 1};
   const double begin = nowSeconds();
   auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
