@@ -15,7 +15,9 @@ HardCase boxCase(const std::string& name, const std::string& claim, const std::s
   return hard;
 }
 
-std::vector<HardCase> boxCases() {
+}  // namespace
+
+std::vector<HardCase> makeHardCases() {
   std::vector<HardCase> cases{
       boxCase("scale 1e-3", "A thousandth of the size, intensity by its square", "hard-scale-1e-3"),
       boxCase("scale 1e4", "Ten thousand times the size, intensity by its square", "hard-scale-1e4"),
@@ -34,12 +36,6 @@ std::vector<HardCase> boxCases() {
   return cases;
 }
 
-}  // namespace
-
-const std::vector<HardCase>& hardCases() {
-  static const std::vector<HardCase> kCases = boxCases();
-  return kCases;
-}
 const char* hardCaseGroup() { return "1-box"; }
 
 }  // namespace limn::test

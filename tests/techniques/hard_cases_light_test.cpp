@@ -148,7 +148,18 @@ Scene lightInFloor() {
   return b.scene;
 }
 
-std::vector<HardCase> lightCases() {
+TEST(BrokenSky, ValuesThatAreCleanedAreCounted) {
+  TestSession session(brokenSky(true), smallPicture());
+  session.ask(DescribeRequest{});
+  session.run(0);
+  const auto replies = session.take<DescribeReply>();
+  ASSERT_EQ(replies.size(), 1u);
+  EXPECT_THAT(replies[0].scene->report.notes, testing::Contains(testing::HasSubstr("879 values of the environment")));
+}
+
+}  // namespace
+
+std::vector<HardCase> makeHardCases() {
   std::vector<HardCase> cases{
       lit("1e6 W/sr in a 1e-3 sphere", "Lights like the point light of its mean intensity", [] { return tinyLight(true); }, {}),
       lit("10,000 lights, one strong", "The others send a millionth each", oneStrongLight, oneStrongRadiance()),
@@ -172,21 +183,6 @@ std::vector<HardCase> lightCases() {
   return cases;
 }
 
-TEST(BrokenSky, ValuesThatAreCleanedAreCounted) {
-  TestSession session(brokenSky(true), smallPicture());
-  session.ask(DescribeRequest{});
-  session.run(0);
-  const auto replies = session.take<DescribeReply>();
-  ASSERT_EQ(replies.size(), 1u);
-  EXPECT_THAT(replies[0].scene->report.notes, testing::Contains(testing::HasSubstr("879 values of the environment")));
-}
-
-}  // namespace
-
-const std::vector<HardCase>& hardCases() {
-  static const std::vector<HardCase> kCases = lightCases();
-  return kCases;
-}
 const char* hardCaseGroup() { return "3-light"; }
 
 }  // namespace limn::test

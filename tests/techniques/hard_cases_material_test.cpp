@@ -117,13 +117,10 @@ std::vector<HardCase> rooms() {
 
 }  // namespace
 
-const std::vector<HardCase>& hardCases() {
-  static const std::vector<HardCase> kCases = [] {
-    std::vector<HardCase> cases = furnaces();
-    for (HardCase& hard : rooms()) cases.push_back(std::move(hard));
-    return cases;
-  }();
-  return kCases;
+std::vector<HardCase> makeHardCases() {
+  std::vector<HardCase> cases = furnaces();
+  for (HardCase& hard : rooms()) cases.push_back(std::move(hard));
+  return cases;
 }
 const char* hardCaseGroup() { return "2-material"; }
 

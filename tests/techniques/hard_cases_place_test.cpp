@@ -68,7 +68,9 @@ Scene pillar(std::optional<float> overlap) {
   return b.scene;
 }
 
-std::vector<HardCase> placeCases() {
+}  // namespace
+
+std::vector<HardCase> makeHardCases() {
   std::vector<HardCase> cases{
       place("closed black box", "A lamp inside, and nothing that sends its light on", lampInBlackBox, 0.0),
       place("closed box under a sky", "No light comes in", skyOutside, 0.0),
@@ -87,12 +89,6 @@ std::vector<HardCase> placeCases() {
   return cases;
 }
 
-}  // namespace
-
-const std::vector<HardCase>& hardCases() {
-  static const std::vector<HardCase> kCases = placeCases();
-  return kCases;
-}
 const char* hardCaseGroup() { return "4-place"; }
 
 }  // namespace limn::test
