@@ -24,6 +24,17 @@ inline const std::vector<HardCase>& hardCases() {
   return kCases;
 }
 
+/// `radiance`, where it is known, is that of the whole picture [W·sr⁻¹·m⁻²].
+inline HardCase hardCase(const std::string& name, const std::string& claim, std::function<Scene()> scene,
+                         std::optional<double> radiance = {}) {
+  HardCase hard;
+  hard.name = name;
+  hard.claim = claim;
+  hard.scene = std::move(scene);
+  hard.radiance = radiance;
+  return hard;
+}
+
 inline Scene generatedScene(const std::string& name) {
   return must(loadGltf(LIMN_BUILD_DIR "/scenes/" + name + ".glb")).scene;
 }

@@ -6,10 +6,7 @@ namespace {
 
 HardCase boxCase(const std::string& name, const std::string& claim, const std::string& file,
                  const std::string& twin = "cornell-point") {
-  HardCase hard;
-  hard.name = name;
-  hard.claim = claim;
-  hard.scene = [file] { return generatedScene(file); };
+  HardCase hard = hardCase(name, claim, [file] { return generatedScene(file); });
   hard.twinName = twin;
   hard.twin = [twin] { return generatedScene(twin); };
   return hard;

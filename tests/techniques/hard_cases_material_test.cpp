@@ -14,11 +14,7 @@ Scene floorInFurnace(SceneBuilder& b, uint32_t material, double cosine) {
 }
 
 HardCase furnace(const std::string& name, const std::string& claim, std::function<Scene()> scene, std::optional<double> radiance) {
-  HardCase hard;
-  hard.name = name;
-  hard.claim = claim;
-  hard.scene = std::move(scene);
-  hard.radiance = radiance;
+  HardCase hard = hardCase(name, claim, std::move(scene), radiance);
   if (!radiance) hard.ceiling = 1.0;
   return hard;
 }
