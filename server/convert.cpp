@@ -4,26 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include "server/convert_values.hpp"
+
 namespace limn::server {
 namespace {
-
-// The enumerations of the schema stand in the order of the renderer's; convert_test holds their names together.
-template <class To, class From>
-To same(From value) {
-  return To(uint32_t(value));
-}
 
 template <class T, size_t N, glm::length_t L>
 void copy(const std::array<T, N>& from, glm::vec<L, T>& to) {
   static_assert(N == size_t(L));
   for (size_t i = 0; i < N; ++i) to[glm::length_t(i)] = from[i];
-}
-
-template <glm::length_t L, class T>
-std::array<T, size_t(L)> array(const glm::vec<L, T>& from) {
-  std::array<T, size_t(L)> out{};
-  for (size_t i = 0; i < out.size(); ++i) out[i] = from[glm::length_t(i)];
-  return out;
 }
 
 template <class T, size_t N, glm::length_t L>
@@ -32,8 +21,6 @@ void copy(const std::optional<std::array<T, N>>& from, std::optional<glm::vec<L,
 }
 
 std::optional<float> finite(float value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; }
-
-std::optional<uint32_t> index(int32_t value) { return value == kNone ? std::nullopt : std::optional(uint32_t(value)); }
 
 /// Converts one kind of edit; an overload each.
 struct EditReader {

@@ -4,14 +4,10 @@
 
 #include <glm/gtc/type_ptr.hpp>
 
+#include "server/convert_values.hpp"
+
 namespace limn::server {
 namespace {
-
-std::array<float, 3> array(const glm::vec3& v) { return {v.x, v.y, v.z}; }
-std::array<float, 4> array(const glm::vec4& v) { return {v.x, v.y, v.z, v.w}; }
-std::array<double, 3> array(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
-
-std::optional<uint32_t> index(int32_t value) { return value == kNone ? std::nullopt : std::optional(uint32_t(value)); }
 
 std::vector<std::string> textureNames(const Material& m) {
   const std::pair<const TextureRef&, const char*> slots[] = {
@@ -43,7 +39,7 @@ protocol::Material toWire(const Material& m) {
   wire.clearcoatRoughness = m.clearcoatRoughness;
   wire.normalScale = m.normalScale;
   wire.alphaCutoff = m.alphaCutoff;
-  wire.alphaMode = protocol::AlphaMode(uint32_t(m.alphaMode));
+  wire.alphaMode = same<protocol::AlphaMode>(m.alphaMode);
   wire.doubleSided = m.doubleSided;
   wire.unlit = m.unlit;
   wire.textures = textureNames(m);
@@ -53,7 +49,7 @@ protocol::Material toWire(const Material& m) {
 protocol::Light toWire(const Light& light) {
   protocol::Light wire;
   wire.name = light.name;
-  wire.type = protocol::LightType(uint32_t(light.type));
+  wire.type = same<protocol::LightType>(light.type);
   wire.color = array(light.color);
   wire.intensity = light.intensity;
   wire.range = light.range;
@@ -110,8 +106,8 @@ protocol::SceneMessage toWire(const SceneSummary& scene, protocol::SceneCause ca
   wire.environment = {array(scene.environment.radiance), scene.environment.rotation, sky != nullptr,
                       sky ? sky->name : ""};
   wire.view = toWire(scene.view);
-  wire.resolve = {scene.resolve.exposure, protocol::ToneMap(uint32_t(scene.resolve.toneMap)),
-                  protocol::ResolveView(uint32_t(scene.resolve.view))};
+  wire.resolve = {scene.resolve.exposure, same<protocol::ToneMap>(scene.resolve.toneMap),
+                  same<protocol::ResolveView>(scene.resolve.view)};
   wire.technique = scene.technique;
   wire.parameters = scene.parameters;
   wire.width = scene.width;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "renderer/base/check.hpp"
+#include "renderer/base/mix.hpp"
 #include "renderer/cache/block_metric.hpp"
 #include "renderer/cache/parallel_for.hpp"
 #include "renderer/cache/word_hash.hpp"
@@ -23,10 +24,7 @@ std::span<const glm::vec3> restOf(const Primitive& p) {
 
 /// Other points for every block, so that instances differ.
 uint32_t seedOf(uint32_t seed, size_t block) {
-  uint32_t h = seed * 0x9e3779b9u + uint32_t(block) * 0x85ebca6bu + 1u;
-  h = (h ^ h >> 16) * 0x7feb352du;
-  h = (h ^ h >> 15) * 0x846ca68bu;
-  return h ^ h >> 16;
+  return mix32(seed * 0x9e3779b9u + uint32_t(block) * 0x85ebca6bu + 1u);
 }
 
 }  // namespace

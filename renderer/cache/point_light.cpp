@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/vk/transfer.hpp"
+#include "renderer/gpu/ray_counters.hpp"
 #include "shaders/shared/bindings.h"
-#include "shaders/shared/film_shared.h"
 #include "shaders/shared/point_shared.h"
 #include "shaders/shared/relight_shared.h"
 
@@ -84,16 +83,20 @@ Result<PointLightCache::Buffers> PointLightCache::makeBuffers(vk::Device& device
 }
 
 Result<void> PointLightCache::resize(vk::Device& device, PointLayout layout, bool lobes, bool refined) {
-  if (!m_counters)
-    if (auto made = makeCounters(device); !made) return made;
+  if (!m_counters) {
+    auto counters = gpu::makeRayCounters(device, "point-light", "points.counters");
+    if (!counters) return counters.error();
+    m_counters = counters.take();
+  }
   if (light() && layout == m_layout && lobes == m_lobesKept && refined == m_refinedKept) return {};
-  m_buffers = {};
   const size_t count = std::max<size_t>(layout.count(), 1);
+  std::array<Buffers, 2> buffers;
   for (size_t version = 0; version < (refined ? 2 : 1); ++version) {
     auto made = makeBuffers(device, count, lobes ? count : 1);
     if (!made) return made.error();
-    m_buffers[version] = made.take();
+    buffers[version] = made.take();
   }
+  m_buffers = std::move(buffers);
   m_layout = layout;
   m_lobesKept = lobes;
   m_refinedKept = refined;
@@ -113,18 +116,6 @@ void PointLightCache::recordCopy(vk::CommandRecorder& recorder) const {
     recorder.copyBuffer(first, 0, m_buffers[1].*buffer, 0, first.size());
   }
   recorder.barrier();
-}
-
-Result<void> PointLightCache::makeCounters(vk::Device& device) {
-  vk::BufferDesc desc;
-  desc.owner = "point-light";
-  desc.name = "points.counters";
-  desc.size = shared::kCounterWords * sizeof(uint32_t);
-  desc.memory = vk::MemoryKind::readback;
-  auto counters = vk::Buffer::create(device, desc);
-  if (!counters) return counters.error();
-  m_counters = counters.take();
-  return vk::fill(device, m_counters, 0, desc.size, 0);
 }
 
 std::vector<vk::Binding> PointLightCache::relightBindings(const PointLightContext& context) const {
@@ -231,14 +222,8 @@ std::vector<vk::Binding> PointLightCache::bindings() const {
           vk::storage(BINDING_POINT_LOBES, lobes())};
 }
 
-uint64_t PointLightCache::raysTraced() const {
-  if (!m_counters) return 0;
-  const auto words = m_counters.as<uint32_t>();
-  return uint64_t(words[shared::kCounterRays]) | uint64_t(words[shared::kCounterRays + 1]) << 32;
-}
+uint64_t PointLightCache::raysTraced() const { return m_counters ? gpu::countedRays(m_counters) : 0; }
 
-uint64_t PointLightCache::discardedSamples() const {
-  return m_counters ? m_counters.as<uint32_t>()[shared::kCounterDiscarded] : 0;
-}
+uint64_t PointLightCache::discardedSamples() const { return m_counters ? gpu::countedDiscards(m_counters) : 0; }
 
 }  // namespace limn

@@ -118,7 +118,6 @@ class PointLightCache {
   };
   static Result<Buffers> makeBuffers(vk::Device& device, size_t points, size_t lobes);
   const Buffers& now() const { return m_buffers[size_t(m_selected)]; }
-  Result<void> makeCounters(vk::Device& device);
   std::vector<vk::Binding> relightBindings(const PointLightContext& context) const;
   std::vector<vk::Binding> composeBindings(const PointLightContext& context) const;
   std::vector<vk::Binding> spreadBindings(const PointLightContext& context, const std::vector<vk::Binding>& grid) const;

@@ -4,14 +4,13 @@
 #include <map>
 #include <numbers>
 
+#include "renderer/base/luminance.hpp"
 #include "renderer/gpu/alias_table.hpp"
 
 namespace limn::gpu {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-double luminance(const glm::vec3& c) { return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b; }
 
 double srgbToLinear(uint8_t v) {
   const double c = v / 255.0;

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/base/check.hpp"
 #include "renderer/base/clock.hpp"
+#include "renderer/base/mix.hpp"
+#include "renderer/gpu/ray_counters.hpp"
 #include "renderer/techniques/audit_estimate.hpp"
+#include "renderer/techniques/parameter_default.hpp"
 #include "renderer/techniques/path_tracing.hpp"
 #include "renderer/vk/transfer.hpp"
 #include "shaders/shared/bindings.h"
@@ -30,12 +32,6 @@ constexpr uint32_t kSeedSalt = 0x3c6ef372u;
 
 uint32_t samplesOf(uint32_t level) { return kFirstSamples << level; }
 
-uint32_t mix(uint32_t x) {
-  x = (x ^ (x >> 16)) * 0x7feb352du;
-  x = (x ^ (x >> 15)) * 0x846ca68bu;
-  return x ^ (x >> 16);
-}
-
 /// Pixels [begin, end) along one side of tile `i` of `tiles`: all tiles are of one size, to a pixel.
 struct Range {
   uint32_t begin, end;
@@ -50,7 +46,8 @@ std::vector<uint32_t> drawPixels(Range across, Range down, uint32_t width, uint3
   for (uint32_t y = down.begin; y < down.end; ++y)
     for (uint32_t x = across.begin; x < across.end; ++x) pixels.push_back(y * width + x);
   const auto area = uint32_t(pixels.size()), drawn = std::min(area, kSets);
-  for (uint32_t i = 0; i < drawn; ++i) std::swap(pixels[i], pixels[i + mix(mix(pixels[i] ^ seed) + i) % (area - i)]);
+  for (uint32_t i = 0; i < drawn; ++i)
+    std::swap(pixels[i], pixels[i + mix32(mix32(pixels[i] ^ seed) + i) % (area - i)]);
   pixels.resize(drawn);
   return pixels;
 }
@@ -61,13 +58,6 @@ struct TileGrid {
 TileGrid tilesOf(uint32_t width, uint32_t height) {
   const uint32_t side = std::max(kLeastTileSide, uint32_t(std::ceil(std::sqrt(double(width) * height / kTiles))));
   return {(width + side - 1) / side, (height + side - 1) / side};
-}
-
-uint32_t defaultOf(const char* parameter) {
-  for (const ParameterInfo& p : pathTracingInfo().parameters)
-    if (p.name == parameter) return uint32_t(p.defaultValue);
-  LIMN_CHECK(false);
-  return 0;
 }
 
 }  // namespace
@@ -110,12 +100,9 @@ Result<void> Audit::makeBuffers(const TechniqueContext& context) {
   auto records = vk::Buffer::create(context.device, desc);
   if (!records) return records.error();
   m_records = records.take();
-  desc.name = "audit.counters";
-  desc.size = shared::kCounterWords * sizeof(uint32_t);
-  auto counters = vk::Buffer::create(context.device, desc);
+  auto counters = gpu::makeRayCounters(context.device, "audit", "audit.counters");
   if (!counters) return counters.error();
   m_counters = counters.take();
-  if (auto cleared = vk::fill(context.device, m_counters, 0, desc.size, 0); !cleared) return cleared;
   return makeList(context);
 }
 
@@ -182,9 +169,9 @@ Result<void> Audit::advance(const TechniqueContext& context, double seconds) {
                                      .entryCount = m_piece.count,
                                      .firstSample = m_piece.samples,
                                      .sampleCount = kSamplesAtOnce,
-                                     .seed = mix(m_seed ^ kSeedSalt),
-                                     .maxBounces = defaultOf("maxBounces"),
-                                     .rouletteStart = defaultOf("rouletteStart"),
+                                     .seed = mix32(m_seed ^ kSeedSalt),
+                                     .maxBounces = uint32_t(defaultOf(pathTracingInfo(), "maxBounces")),
+                                     .rouletteStart = uint32_t(defaultOf(pathTracingInfo(), "rouletteStart")),
                                      .byEntry = 1};
   const double begin = nowSeconds();
   auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) {

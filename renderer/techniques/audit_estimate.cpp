@@ -5,6 +5,7 @@
 #include <numeric>
 #include <vector>
 
+#include "renderer/base/luminance.hpp"
 #include "renderer/film/compare.hpp"
 
 namespace limn {
@@ -23,7 +24,6 @@ constexpr double kNoiseThatIsDoubted = 6.0;
 /// Of two ways to know the denominators, the share of the one that the pixel's own samples have a say in; and how far the error
 /// may be from there, in halves of the distance between both. Measured on eleven scenes.
 constexpr double kSampledShare = 0.4, kDenominatorsApart = 1.75;
-const dvec3 kLuminance(0.2126, 0.7152, 0.0722);
 
 /// One pixel: what is shown, the truth as two halves know it, and the variance of one sample.
 struct Pixel {
@@ -39,8 +39,8 @@ std::vector<Pixel> readRecords(std::span<const shared::AuditRecord> records, uin
     if (!(r.shownCount > 0.0f && r.evenCount > 0.0f && r.oddCount > 0.0f)) continue;
     Pixel p{uint32_t(i % tiles), double(r.evenCount) + r.oddCount, r.shown, r.even, r.odd, {}, {}};
     p.truth = (p.even * double(r.evenCount) + p.odd * double(r.oddCount)) / p.samples;
-    const double luminance = glm::dot(p.truth, kLuminance);
-    const dvec3 share = luminance > 0.0 ? p.truth / luminance : dvec3(0.0);
+    const double y = luminance(p.truth);
+    const dvec3 share = y > 0.0 ? p.truth / y : dvec3(0.0);
     p.variance = share * share * (double(r.squares) / (p.samples - 1.0));
     pixels.push_back(p);
   }

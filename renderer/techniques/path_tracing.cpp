@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "renderer/base/clock.hpp"
+#include "renderer/gpu/ray_counters.hpp"
 #include "renderer/gpu/tailored_pass.hpp"
 #include "renderer/techniques/pixel_order.hpp"
 #include "renderer/techniques/work_rate.hpp"
@@ -40,10 +41,8 @@ class PathTracing final : public Technique {
  private:
   std::vector<vk::Binding> bindings(const TechniqueContext& context, const vk::Buffer& list) const;
   Result<void> makeLists(const TechniqueContext& context);
-  Result<void> makeCounters(vk::Device& device);
   Result<void> beginPass(const TechniqueContext& context);
   Result<void> dispatch(const TechniqueContext& context, uint32_t count);
-  void readCounters();
   uint32_t sampleLimit(const TechniqueContext& context) const { return context.sampleLimit ? context.sampleLimit : m_maxSamples; }
   Progress progress() const;
 
@@ -101,23 +100,14 @@ Result<void> PathTracing::makeLists(const TechniqueContext& context) {
   auto active = vk::Buffer::create(context.device, desc);
   if (!active) return active.error();
   m_active = active.take();
-  if (!m_counters)
-    if (auto made = makeCounters(context.device); !made) return made;
+  if (!m_counters) {
+    auto counters = gpu::makeRayCounters(context.device, "path-tracing", "pathTracing.counters");
+    if (!counters) return counters.error();
+    m_counters = counters.take();
+  }
   m_listWidth = context.film.width();
   m_listHeight = context.film.height();
   return {};
-}
-
-Result<void> PathTracing::makeCounters(vk::Device& device) {
-  vk::BufferDesc desc;
-  desc.owner = "path-tracing";
-  desc.name = "pathTracing.counters";
-  desc.size = shared::kCounterWords * sizeof(uint32_t);
-  desc.memory = vk::MemoryKind::readback;
-  auto counters = vk::Buffer::create(device, desc);
-  if (!counters) return counters.error();
-  m_counters = counters.take();
-  return vk::fill(device, m_counters, 0, desc.size, 0);
 }
 
 std::vector<vk::Binding> PathTracing::bindings(const TechniqueContext& context, const vk::Buffer& list) const {
@@ -164,14 +154,9 @@ Result<void> PathTracing::dispatch(const TechniqueContext& context, uint32_t cou
   const double seconds = nowSeconds() - begin;
   m_rate.measured(uint64_t(count) * m_passSamples, seconds);
   m_traceSeconds += seconds;
-  readCounters();
+  m_raysTraced = gpu::countedRays(m_counters);
+  m_discarded = gpu::countedDiscards(m_counters);
   return {};
-}
-
-void PathTracing::readCounters() {
-  const auto words = m_counters.as<uint32_t>();
-  m_raysTraced = uint64_t(words[shared::kCounterRays]) | uint64_t(words[shared::kCounterRays + 1]) << 32;
-  m_discarded = words[shared::kCounterDiscarded];
 }
 
 Result<Progress> PathTracing::advance(const TechniqueContext& context, double seconds) {

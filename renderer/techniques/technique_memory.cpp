@@ -6,6 +6,7 @@
 #include "renderer/base/check.hpp"
 #include "renderer/cache/point_light.hpp"
 #include "renderer/techniques/audit.hpp"
+#include "renderer/techniques/parameter_default.hpp"
 #include "renderer/techniques/path_tracing.hpp"
 #include "renderer/techniques/point_projection_impl.hpp"
 #include "shaders/shared/film_shared.h"
@@ -23,9 +24,7 @@ constexpr uint32_t kTile = 16;              // [pixel] side of what the error is
 constexpr uint64_t kFilmPlanes = 5;
 
 double valueOf(const TechniqueInfo& info, const std::string& name, const PictureSettings& settings) {
-  double value = 0.0;
-  for (const ParameterInfo& p : info.parameters)
-    if (p.name == name) value = p.defaultValue;
+  double value = defaultOf(info, name);
   for (const auto& [given, number] : settings.parameters)
     if (given == name) value = number;
   return value;

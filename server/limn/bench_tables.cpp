@@ -64,6 +64,14 @@ bool hasRun(const SceneResult& scene, const Curve& curve) {
   return false;
 }
 
+template <class List, class Write>
+void writeList(JsonWriter& json, const char* name, const List& list, Write write) {
+  json.key(name);
+  json.beginArray();
+  for (const auto& item : list) write(json, item);
+  json.endArray();
+}
+
 void writeFit(JsonWriter& json, const char* name, const std::optional<PowerFit>& fit) {
   if (!fit) return;
   json.key(name);
@@ -112,10 +120,7 @@ void writeTimes(JsonWriter& json, const Curve& curve) {
 void writeCurve(JsonWriter& json, const Curve& curve) {
   json.beginObject();
   json.field("technique", curve.technique);
-  json.key("points");
-  json.beginArray();
-  for (const CurvePoint& point : curve.points) writePoint(json, point);
-  json.endArray();
+  writeList(json, "points", curve.points, writePoint);
   writeTimes(json, curve);
   writeFit(json, "slope", curve.slope);
   writeFit(json, "slopeAll", curve.slopeAll);
@@ -162,18 +167,9 @@ void writeScene(JsonWriter& json, const SceneResult& scene) {
   json.field("smallestError", scene.smallestError);
   json.field("fineEnough", scene.referenceFineEnough);
   json.endObject();
-  json.key("curves");
-  json.beginArray();
-  for (const Curve& curve : scene.curves) writeCurve(json, curve);
-  json.endArray();
-  json.key("runs");
-  json.beginArray();
-  for (const Run& run : scene.runs) writeRun(json, run);
-  json.endArray();
-  json.key("ablation");
-  json.beginArray();
-  for (const Ablation& ablation : scene.ablations) writeAblation(json, ablation);
-  json.endArray();
+  writeList(json, "curves", scene.curves, writeCurve);
+  writeList(json, "runs", scene.runs, writeRun);
+  writeList(json, "ablation", scene.ablations, writeAblation);
   json.endObject();
 }
 
@@ -186,22 +182,21 @@ void writeCalibration(JsonWriter& json, const char* name, const Calibration& cal
   json.endObject();
 }
 
+void writeGrowthPoint(JsonWriter& json, const Growth::Point& point) {
+  json.beginObject();
+  json.field("size", point.size);
+  json.field("stepSeconds", point.stepSeconds);
+  json.field("firstSeconds", point.firstSeconds);
+  json.field("megabytes", point.megabytes);
+  json.field("buildSeconds", point.buildSeconds);
+  json.endObject();
+}
+
 void writeGrowth(JsonWriter& json, const Growth& growth) {
   json.beginObject();
   json.field("technique", growth.technique);
   json.field("axis", growth.axis);
-  json.key("points");
-  json.beginArray();
-  for (const Growth::Point& point : growth.points) {
-    json.beginObject();
-    json.field("size", point.size);
-    json.field("stepSeconds", point.stepSeconds);
-    json.field("firstSeconds", point.firstSeconds);
-    json.field("megabytes", point.megabytes);
-    json.field("buildSeconds", point.buildSeconds);
-    json.endObject();
-  }
-  json.endArray();
+  writeList(json, "points", growth.points, writeGrowthPoint);
   writeFit(json, "time", growth.time);
   writeFit(json, "first", growth.first);
   writeFit(json, "memory", growth.memory);
@@ -231,14 +226,6 @@ void writeHardCell(JsonWriter& json, const HardCell& cell) {
   writeHardFigure(json, "fireflies", cell.fireflies);
   json.field("reason", cell.reason);
   json.endObject();
-}
-
-template <class List, class Write>
-void writeList(JsonWriter& json, const char* name, const List& list, Write write) {
-  json.key(name);
-  json.beginArray();
-  for (const auto& item : list) write(json, item);
-  json.endArray();
 }
 
 }  // namespace

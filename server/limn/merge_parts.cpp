@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "renderer/base/luminance.hpp"
 #include "server/arguments.hpp"
 
 namespace limn {
@@ -49,8 +50,6 @@ std::optional<Error> identityDiffers(const MergePart& a, const MergePart& b) {
   if (!sameLayers(a.image.layers, b.image.layers)) return mismatch("other layers");
   return std::nullopt;
 }
-
-double luminance(const float* rgb) { return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]; }
 
 }  // namespace
 

@@ -9,6 +9,25 @@ namespace {
 using protocol::Encoding;
 using ::testing::ElementsAre;
 
+/// The seq of the edit.
+uint32_t sendRoughness(TestClient& client, uint32_t material, float roughness) {
+  const uint32_t seq = client.nextSeq();
+  client.send(setRoughness(seq, material, roughness));
+  return seq;
+}
+
+/// Edits five times, each after the edit before was acknowledged.
+void editFiveTimes(TestClient& client) {
+  for (int i = 0; i < 5; ++i) client.awaitReply<protocol::Ack>(sendRoughness(client, 0, 0.1f * float(i)));
+}
+
+/// Waits for so many steps or for the error, and without either for the end.
+protocol::Waited waitFor(TestClient& client, std::optional<uint32_t> steps, std::optional<float> error) {
+  const uint32_t seq = client.nextSeq();
+  client.send(protocol::Wait{seq, steps, error});
+  return client.awaitReply<protocol::Waited>(seq);
+}
+
 TEST(Conversation, helloIsAnsweredWithHelloSceneAndStatus) {
   TestService server;
   TestClient client(server.port());
@@ -53,8 +72,7 @@ TEST(Conversation, everyEditIsAcknowledgedWithItsCost) {
   TestService server;
   TestClient client(server.port());
   client.greet();
-  uint32_t seq = client.nextSeq();
-  client.send(setRoughness(seq, 1, 0.25f));
+  uint32_t seq = sendRoughness(client, 1, 0.25f);
   EXPECT_EQ(client.awaitReply<protocol::Ack>(seq).cost, protocol::CostClass::relight);
   seq = client.nextSeq();
   client.send(moveCamera(seq, 3.0));
@@ -88,8 +106,7 @@ TEST(Conversation, aPictureShowsTheEditThatItAcknowledges) {
   TestService server;
   TestClient client(server.port());
   client.greet();
-  const uint32_t seq = client.nextSeq();
-  client.send(setRoughness(seq, 0, 0.5f));
+  const uint32_t seq = sendRoughness(client, 0, 0.5f);
   const auto ack = client.awaitReply<protocol::Ack>(seq);
   const auto picture = client.awaitPicture([&](const protocol::FrameHeader& h) { return h.ackSeq == seq; });
   EXPECT_GE(picture.header.sceneRevision, ack.sceneRevision);
@@ -156,47 +173,30 @@ TEST(Conversation, waitIsAnsweredAtTheSteps) {
   TestService server;
   TestClient client(server.port());
   client.greet();
-  uint32_t seq = client.nextSeq();
-  client.send(protocol::Wait{seq, 2u, std::nullopt});
-  EXPECT_GE(client.awaitReply<protocol::Waited>(seq).steps, 2u);
-  seq = client.nextSeq();
-  client.send(protocol::Wait{seq, std::nullopt, std::nullopt});
-  EXPECT_EQ(client.awaitReply<protocol::Waited>(seq).steps, 4u);
+  EXPECT_GE(waitFor(client, 2u, {}).steps, 2u);
+  EXPECT_EQ(waitFor(client, {}, {}).steps, 4u);
 }
 
 TEST(Conversation, waitForAnErrorIsAnsweredOnceThePictureIsSoGood) {
   TestService server;
   TestClient client(server.port());
   client.greet();
-  const uint32_t edit = client.nextSeq();
-  client.send(setRoughness(edit, 0, 0.75f));
-  const uint32_t seq = client.nextSeq();
-  client.send(protocol::Wait{seq, std::nullopt, 0.34f});
-  EXPECT_GE(client.awaitReply<protocol::Waited>(seq).steps, 3u);
+  sendRoughness(client, 0, 0.75f);
+  EXPECT_GE(waitFor(client, {}, 0.34f).steps, 3u);
 }
 
 TEST(Conversation, waitForAnErrorIsAnsweredAlsoWhenNobodyWatches) {
   TestService server;
   TestClient client(server.port());
   client.greet(false);
-  const uint32_t edit = client.nextSeq();
-  client.send(setRoughness(edit, 0, 0.75f));
-  client.awaitReply<protocol::Ack>(edit);
-  const uint32_t seq = client.nextSeq();
-  client.send(protocol::Wait{seq, std::nullopt, 0.34f});
-  EXPECT_GE(client.awaitReply<protocol::Waited>(seq).steps, 3u);
+  client.awaitReply<protocol::Ack>(sendRoughness(client, 0, 0.75f));
+  EXPECT_GE(waitFor(client, {}, 0.34f).steps, 3u);
   EXPECT_EQ(client.picturesSeen, 0u) << "waiting is not watching";
 
   // Afterwards the renderer rests again: what is edited now is shown to nobody.
-  const uint32_t last = client.nextSeq();
-  client.send(setRoughness(last, 0, 0.5f));
-  client.awaitReply<protocol::Ack>(last);
+  client.awaitReply<protocol::Ack>(sendRoughness(client, 0, 0.5f));
   const uint64_t published = server.renderer->framesPublished();
-  for (int i = 0; i < 5; ++i) {
-    const uint32_t more = client.nextSeq();
-    client.send(setRoughness(more, 0, 0.1f * float(i)));
-    client.awaitReply<protocol::Ack>(more);
-  }
+  editFiveTimes(client);
   EXPECT_EQ(server.renderer->framesPublished(), published);
 }
 
@@ -204,11 +204,8 @@ TEST(Conversation, waitForAnErrorIsNotHeldUpByAnEditThatFailed) {
   TestService server;
   TestClient client(server.port());
   client.greet();
-  const uint32_t edit = client.nextSeq();
-  client.send(setRoughness(edit, 99, 0.75f));
-  const uint32_t seq = client.nextSeq();
-  client.send(protocol::Wait{seq, std::nullopt, 0.5f});
-  EXPECT_GE(client.awaitReply<protocol::Waited>(seq).steps, 2u);
+  sendRoughness(client, 99, 0.75f);
+  EXPECT_GE(waitFor(client, {}, 0.5f).steps, 2u);
 }
 
 TEST(Conversation, anEditIsToldToTheOthersAndNotToItsAuthor) {
@@ -217,8 +214,7 @@ TEST(Conversation, anEditIsToldToTheOthersAndNotToItsAuthor) {
   author.greet();
   other.greet();
   other.await<protocol::SceneMessage>();
-  const uint32_t seq = author.nextSeq();
-  author.send(setRoughness(seq, 1, 0.125f));
+  sendRoughness(author, 1, 0.125f);
   const auto scene = other.await<protocol::SceneMessage>();
   EXPECT_EQ(scene.cause, protocol::SceneCause::edited);
   EXPECT_EQ(scene.materials.at(1).roughness, 0.125f);
@@ -270,11 +266,7 @@ TEST(Conversation, clientsThatDoNotWatchGetNoPictures) {
   TestService server;
   TestClient client(server.port());
   client.greet(false);
-  for (int i = 0; i < 5; ++i) {
-    const uint32_t seq = client.nextSeq();
-    client.send(setRoughness(seq, 0, 0.1f * float(i)));
-    client.awaitReply<protocol::Ack>(seq);
-  }
+  editFiveTimes(client);
   EXPECT_EQ(client.picturesSeen, 0u);
   EXPECT_EQ(server.renderer->framesPublished(), 0u);
 }

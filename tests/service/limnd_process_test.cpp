@@ -5,6 +5,7 @@
 
 #include "renderer/base/clock.hpp"
 #include "tests/service/daemon_fixture.hpp"
+#include "tests/support/environment_variable.hpp"
 
 namespace limn::server::testing {
 namespace {
@@ -62,20 +63,8 @@ TEST(LimndProcess, convergedItCostsNoProcessor) {
   EXPECT_TRUE(comesToRest(daemon, client));
 }
 
-/// A variable of this process while the object lives; what it starts inherits it.
-class Variable {
- public:
-  Variable(const char* name, const char* value) : m_name(name) { setenv(name, value, 1); }
-  ~Variable() { unsetenv(m_name); }
-  Variable(const Variable&) = delete;
-  Variable& operator=(const Variable&) = delete;
-
- private:
-  const char* m_name;
-};
-
 TEST(LimndProcess, aDeviceThatIsLostWhileStartingIsExit75) {
-  const Variable lose("LIMN_LOSE_DEVICE_AT", "1");
+  const test::EnvironmentVariable lose("LIMN_LOSE_DEVICE_AT", "1");
   ChildProcess process(kProgram, Daemon::defaults());
   EXPECT_EQ(process.readLine(), "") << "it never listened";
   EXPECT_EQ(process.wait(), 75);
@@ -84,7 +73,7 @@ TEST(LimndProcess, aDeviceThatIsLostWhileStartingIsExit75) {
 }
 
 TEST(LimndProcess, aDeviceThatIsLostWhileRenderingIsToldToClientsAndExit75) {
-  const Variable lose("LIMN_LOSE_DEVICE_AT", "200");
+  const test::EnvironmentVariable lose("LIMN_LOSE_DEVICE_AT", "200");
   Daemon daemon;
   TestClient client(daemon.port);
   client.greet();

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "renderer/base/luminance.hpp"
 #include "renderer/film/film_statistics.hpp"
 #include "renderer/gpu/camera.hpp"
 #include "renderer/gpu/pass.hpp"
@@ -85,8 +86,7 @@ Measured measure(const FilmImage& image, const std::string& layer) {
   Measured m;
   const size_t n = errors->data.size();
   for (size_t i = 0; i < n; ++i) {
-    const float* c = &colors->data[3 * i];
-    m.mean += 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+    m.mean += luminance(&colors->data[3 * i]);
     m.error += double(errors->data[i]) * errors->data[i];
   }
   m.mean /= double(n);

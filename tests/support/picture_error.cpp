@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "renderer/base/check.hpp"
+#include "renderer/base/luminance.hpp"
 
 namespace limn::test {
 namespace {
@@ -15,9 +16,7 @@ const std::vector<float>& dataOf(const FilmImage& picture, const std::string& la
   return found->data;
 }
 
-double luminance(const std::vector<float>& rgb, size_t pixel) {
-  return 0.2126 * rgb[3 * pixel] + 0.7152 * rgb[3 * pixel + 1] + 0.0722 * rgb[3 * pixel + 2];
-}
+double luminanceOf(const std::vector<float>& rgb, size_t pixel) { return luminance(&rgb[3 * pixel]); }
 
 /// Mean of (x−r)(y−s) over the square of the reference, whose noise `r` and `s` share none of.
 double meanQuotient(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& r, const std::vector<float>& s) {
@@ -60,7 +59,7 @@ Deviation deviationOf(const PicturePair& pair, const PicturePair& reference, con
   Sums whole;
   for (size_t i = 0; i < size_t(width) * pair.a.height; ++i) {
     double v[4];
-    for (int k = 0; k < 4; ++k) v[k] = luminance(*all[k], i);
+    for (int k = 0; k < 4; ++k) v[k] = luminanceOf(*all[k], i);
     for (Sums* s : {&whole, &tiles[i / width / kTile * tilesX + i % width / kTile]}) {
       s->difference += 0.5 * (v[0] + v[1] - v[2] - v[3]);
       s->variance += 0.25 * ((v[0] - v[1]) * (v[0] - v[1]) + (v[2] - v[3]) * (v[2] - v[3]));
@@ -102,9 +101,10 @@ int firefliesOf(const FilmImage& picture, const FilmImage& reference, double fac
     double around = floor;
     for (int k = 0; k < 9; ++k) {
       const int qx = i % width + k % 3 - 1, qy = i / width + k / 3 - 1;
-      if (qx >= 0 && qy >= 0 && qx < width && qy < height) around = std::max(around, luminance(r, size_t(qy * width + qx)));
+      if (qx >= 0 && qy >= 0 && qx < width && qy < height)
+        around = std::max(around, luminanceOf(r, size_t(qy * width + qx)));
     }
-    count += luminance(x, size_t(i)) > factor * around;
+    count += luminanceOf(x, size_t(i)) > factor * around;
   }
   return count;
 }

@@ -14,10 +14,26 @@
 
 namespace limn::test {
 
-/// The hard cases of one program, in the order of the table.
-const std::vector<HardCase>& hardCases();
+/// The hard cases of this program, in the order of the table.
+std::vector<HardCase> makeHardCases();
 /// Names this program's part of the table.
 const char* hardCaseGroup();
+
+inline const std::vector<HardCase>& hardCases() {
+  static const std::vector<HardCase> kCases = makeHardCases();
+  return kCases;
+}
+
+/// `radiance`, where it is known, is that of the whole picture [W·sr⁻¹·m⁻²].
+inline HardCase hardCase(const std::string& name, const std::string& claim, std::function<Scene()> scene,
+                         std::optional<double> radiance = {}) {
+  HardCase hard;
+  hard.name = name;
+  hard.claim = claim;
+  hard.scene = std::move(scene);
+  hard.radiance = radiance;
+  return hard;
+}
 
 inline Scene generatedScene(const std::string& name) {
   return must(loadGltf(LIMN_BUILD_DIR "/scenes/" + name + ".glb")).scene;

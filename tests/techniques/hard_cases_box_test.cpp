@@ -6,16 +6,15 @@ namespace {
 
 HardCase boxCase(const std::string& name, const std::string& claim, const std::string& file,
                  const std::string& twin = "cornell-point") {
-  HardCase hard;
-  hard.name = name;
-  hard.claim = claim;
-  hard.scene = [file] { return generatedScene(file); };
+  HardCase hard = hardCase(name, claim, [file] { return generatedScene(file); });
   hard.twinName = twin;
   hard.twin = [twin] { return generatedScene(twin); };
   return hard;
 }
 
-std::vector<HardCase> boxCases() {
+}  // namespace
+
+std::vector<HardCase> makeHardCases() {
   std::vector<HardCase> cases{
       boxCase("scale 1e-3", "A thousandth of the size, intensity by its square", "hard-scale-1e-3"),
       boxCase("scale 1e4", "Ten thousand times the size, intensity by its square", "hard-scale-1e4"),
@@ -34,12 +33,6 @@ std::vector<HardCase> boxCases() {
   return cases;
 }
 
-}  // namespace
-
-const std::vector<HardCase>& hardCases() {
-  static const std::vector<HardCase> kCases = boxCases();
-  return kCases;
-}
 const char* hardCaseGroup() { return "1-box"; }
 
 }  // namespace limn::test

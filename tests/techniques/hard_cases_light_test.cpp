@@ -10,15 +10,6 @@ namespace {
 constexpr double kAlbedo = 0.5;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
 
-HardCase lit(const std::string& name, const std::string& claim, std::function<Scene()> scene, std::optional<double> radiance) {
-  HardCase hard;
-  hard.name = name;
-  hard.claim = claim;
-  hard.scene = std::move(scene);
-  hard.radiance = radiance;
-  return hard;
-}
-
 /// A grey floor whose origin alone is looked at.
 SceneBuilder floorAtOrigin(glm::dvec3 eye = {0.3, 1.0, 0.9}) {
   SceneBuilder b;
@@ -148,16 +139,30 @@ Scene lightInFloor() {
   return b.scene;
 }
 
-std::vector<HardCase> lightCases() {
+TEST(BrokenSky, ValuesThatAreCleanedAreCounted) {
+  TestSession session(brokenSky(true), smallPicture());
+  session.ask(DescribeRequest{});
+  session.run(0);
+  const auto replies = session.take<DescribeReply>();
+  ASSERT_EQ(replies.size(), 1u);
+  EXPECT_THAT(replies[0].scene->report.notes, testing::Contains(testing::HasSubstr("879 values of the environment")));
+}
+
+}  // namespace
+
+std::vector<HardCase> makeHardCases() {
   std::vector<HardCase> cases{
-      lit("1e6 W/sr in a 1e-3 sphere", "Lights like the point light of its mean intensity", [] { return tinyLight(true); }, {}),
-      lit("10,000 lights, one strong", "The others send a millionth each", oneStrongLight, oneStrongRadiance()),
-      lit("10,000 lights, one open", "The others are as strong, and shut in a box", oneOpenLight, lambert({0, 1, 0}, 1.0)),
-      lit("HDR sky with a hot texel", "1e6 in a sky of 0.01", hotTexel, hotTexelRadiance()),
-      lit("HDR sky with NaN and infinity", "Such texels are 0", [] { return brokenSky(true); }, {}),
-      lit("grazing light", "A sun at a cosine of 1e-3", grazingLight, kAlbedo / kPi * 1000.0 * 1e-3),
-      lit("grazing view", "Seen at a cosine of 1e-3", grazingView, kAlbedo / kPi * 2.0),
-      lit("light in a surface", "Exactly in the plane of the floor", lightInFloor, kAlbedo / kPi * 4.0 / std::pow(2.0, 1.5))};
+      hardCase("1e6 W/sr in a 1e-3 sphere", "Lights like the point light of its mean intensity",
+               [] { return tinyLight(true); }),
+      hardCase("10,000 lights, one strong", "The others send a millionth each", oneStrongLight, oneStrongRadiance()),
+      hardCase("10,000 lights, one open", "The others are as strong, and shut in a box",
+               oneOpenLight, lambert({0, 1, 0}, 1.0)),
+      hardCase("HDR sky with a hot texel", "1e6 in a sky of 0.01", hotTexel, hotTexelRadiance()),
+      hardCase("HDR sky with NaN and infinity", "Such texels are 0", [] { return brokenSky(true); }),
+      hardCase("grazing light", "A sun at a cosine of 1e-3", grazingLight, kAlbedo / kPi * 1000.0 * 1e-3),
+      hardCase("grazing view", "Seen at a cosine of 1e-3", grazingView, kAlbedo / kPi * 2.0),
+      hardCase("light in a surface", "Exactly in the plane of the floor",
+               lightInFloor, kAlbedo / kPi * 4.0 / std::pow(2.0, 1.5))};
   cases[0].twinName = "point";
   cases[0].twin = [] { return tinyLight(false); };
   cases[0].rounding = 2e-3;  // the ball has 16 sides
@@ -172,21 +177,6 @@ std::vector<HardCase> lightCases() {
   return cases;
 }
 
-TEST(BrokenSky, ValuesThatAreCleanedAreCounted) {
-  TestSession session(brokenSky(true), smallPicture());
-  session.ask(DescribeRequest{});
-  session.run(0);
-  const auto replies = session.take<DescribeReply>();
-  ASSERT_EQ(replies.size(), 1u);
-  EXPECT_THAT(replies[0].scene->report.notes, testing::Contains(testing::HasSubstr("879 values of the environment")));
-}
-
-}  // namespace
-
-const std::vector<HardCase>& hardCases() {
-  static const std::vector<HardCase> kCases = lightCases();
-  return kCases;
-}
 const char* hardCaseGroup() { return "3-light"; }
 
 }  // namespace limn::test

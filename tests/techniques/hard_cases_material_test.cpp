@@ -14,11 +14,7 @@ Scene floorInFurnace(SceneBuilder& b, uint32_t material, double cosine) {
 }
 
 HardCase furnace(const std::string& name, const std::string& claim, std::function<Scene()> scene, std::optional<double> radiance) {
-  HardCase hard;
-  hard.name = name;
-  hard.claim = claim;
-  hard.scene = std::move(scene);
-  hard.radiance = radiance;
+  HardCase hard = hardCase(name, claim, std::move(scene), radiance);
   if (!radiance) hard.ceiling = 1.0;
   return hard;
 }
@@ -117,13 +113,10 @@ std::vector<HardCase> rooms() {
 
 }  // namespace
 
-const std::vector<HardCase>& hardCases() {
-  static const std::vector<HardCase> kCases = [] {
-    std::vector<HardCase> cases = furnaces();
-    for (HardCase& hard : rooms()) cases.push_back(std::move(hard));
-    return cases;
-  }();
-  return kCases;
+std::vector<HardCase> makeHardCases() {
+  std::vector<HardCase> cases = furnaces();
+  for (HardCase& hard : rooms()) cases.push_back(std::move(hard));
+  return cases;
 }
 const char* hardCaseGroup() { return "2-material"; }
 

@@ -5,15 +5,6 @@
 namespace limn::test {
 namespace {
 
-HardCase place(const std::string& name, const std::string& claim, std::function<Scene()> scene, std::optional<double> radiance) {
-  HardCase hard;
-  hard.name = name;
-  hard.claim = claim;
-  hard.scene = std::move(scene);
-  hard.radiance = radiance;
-  return hard;
-}
-
 SceneBuilder boxAround(float albedo) {
   SceneBuilder b;
   b.box(b.diffuse(glm::vec3(albedo)), {-1, -1, -1}, {1, 1, 1});
@@ -68,16 +59,20 @@ Scene pillar(std::optional<float> overlap) {
   return b.scene;
 }
 
-std::vector<HardCase> placeCases() {
+}  // namespace
+
+std::vector<HardCase> makeHardCases() {
   std::vector<HardCase> cases{
-      place("closed black box", "A lamp inside, and nothing that sends its light on", lampInBlackBox, 0.0),
-      place("closed box under a sky", "No light comes in", skyOutside, 0.0),
-      place("camera in glass", "A glass ball around the eye in a furnace of 1: in a medium, radiance is as the square of its index",
-            eyeInGlass, 1.5 * 1.5),
-      place("camera in a wall", "The eye in the wall of a shining box, five bounces", eyeInWall, 1.0 - std::pow(0.5, 6.0)),
-      place("touching bodies", "Two boxes, one on the other, are one", [] { return pillar(0.0f); }, {}),
-      place("interpenetrating bodies", "Two boxes, one in the other, are one", [] { return pillar(0.3f); }, {}),
-      place("touching glass", "A glass ball on the floor", [] { return generatedScene("hard-touching"); }, {})};
+      hardCase("closed black box", "A lamp inside, and nothing that sends its light on", lampInBlackBox, 0.0),
+      hardCase("closed box under a sky", "No light comes in", skyOutside, 0.0),
+      hardCase("camera in glass",
+               "A glass ball around the eye in a furnace of 1: in a medium, radiance is as the square of its index",
+               eyeInGlass, 1.5 * 1.5),
+      hardCase("camera in a wall", "The eye in the wall of a shining box, five bounces",
+               eyeInWall, 1.0 - std::pow(0.5, 6.0)),
+      hardCase("touching bodies", "Two boxes, one on the other, are one", [] { return pillar(0.0f); }),
+      hardCase("interpenetrating bodies", "Two boxes, one in the other, are one", [] { return pillar(0.3f); }),
+      hardCase("touching glass", "A glass ball on the floor", [] { return generatedScene("hard-touching"); })};
   for (const size_t i : {4u, 5u}) {
     cases[i].twinName = "pillar";
     cases[i].twin = [] { return pillar({}); };
@@ -87,12 +82,6 @@ std::vector<HardCase> placeCases() {
   return cases;
 }
 
-}  // namespace
-
-const std::vector<HardCase>& hardCases() {
-  static const std::vector<HardCase> kCases = placeCases();
-  return kCases;
-}
 const char* hardCaseGroup() { return "4-place"; }
 
 }  // namespace limn::test

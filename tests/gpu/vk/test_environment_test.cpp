@@ -2,21 +2,10 @@
 #include "renderer/vk/test_environment.hpp"
 
 #include "tests/gpu/vk/vk_fixture.hpp"
+#include "tests/support/environment_variable.hpp"
 
 namespace limn::vk {
 namespace {
-
-/// A variable of this process while the object lives.
-class Variable {
- public:
-  Variable(const char* name, const char* value) : m_name(name) { setenv(name, value, 1); }
-  ~Variable() { unsetenv(m_name); }
-  Variable(const Variable&) = delete;
-  Variable& operator=(const Variable&) = delete;
-
- private:
-  const char* m_name;
-};
 
 TEST(TestEnvironment, NothingIsAskedWithoutTheVariables) {
   EXPECT_FALSE(testEnvironment().validation);
@@ -25,7 +14,7 @@ TEST(TestEnvironment, NothingIsAskedWithoutTheVariables) {
 
 /// Ends the process, if the layer has anything to say of a buffer of no bytes.
 [[noreturn]] void makeAMistake() {
-  const Variable variable("LIMN_VALIDATION", "1");
+  const test::EnvironmentVariable variable("LIMN_VALIDATION", "1");
   const auto device = must(Device::open({}));
   auto info = typed<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
   info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
@@ -40,7 +29,7 @@ TEST(TestEnvironmentDeathTest, UnderValidationTheFirstMessageEndsTheProcessWithE
 }
 
 TEST(TestEnvironment, TheDeviceIsLostAtTheSubmissionThatWasAskedFor) {
-  const Variable variable("LIMN_LOSE_DEVICE_AT", "3");
+  const test::EnvironmentVariable variable("LIMN_LOSE_DEVICE_AT", "3");
   ValidatedDevice device;
   for (int submission = 1; submission <= 4; ++submission) {
     CommandRecorder recorder(*device);

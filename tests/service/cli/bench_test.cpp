@@ -9,7 +9,8 @@
 #include "protocol/json_value.hpp"
 #include "renderer/techniques/technique_info.hpp"
 #include "server/arguments.hpp"
-#include "tests/service/cli/run_program.hpp"
+#include "tests/service/cli/scratch_fixture.hpp"
+#include "tests/support/environment_variable.hpp"
 
 namespace limn {
 namespace {
@@ -20,17 +21,9 @@ using ::testing::Not;
 const std::string kScene = LIMN_BUILD_DIR "/scenes/analytic-point.glb";
 const std::string kNoisyScene = LIMN_BUILD_DIR "/scenes/cornell-point.glb";
 
-/// Pipelines and references are kept between the benchmarks of this program.
-class Bench : public ::testing::Test {
+/// References, too, are kept between the benchmarks of this program.
+class Bench : public test::ScratchFixture {
  protected:
-  static void SetUpTestSuite() {
-    s_scratch = new test::ScratchDirectory;
-    setenv("XDG_CACHE_HOME", s_scratch->file("cache").c_str(), 1);
-  }
-  static void TearDownTestSuite() { delete s_scratch; }
-
-  static std::string file(const std::string& name) { return s_scratch->file(name); }
-
   static test::ProgramRun run(const std::string& output, std::vector<std::string> flags) {
     flags.insert(flags.begin(), {"bench", "--output", file(output), "--size", "64x64", "--reference-seconds", "0.2",
                                  "--references", file("references")});
@@ -56,9 +49,6 @@ class Bench : public ::testing::Test {
     }
     return read;
   }
-
- private:
-  static inline test::ScratchDirectory* s_scratch = nullptr;
 };
 
 TEST_F(Bench, WritesATableAPageAndItsFigures) {
@@ -113,10 +103,8 @@ TEST_F(Bench, PlotsAreDrawnInBothFormats) {
 }
 
 TEST_F(Bench, WithoutGnuplotThePageSaysSo) {
-  const std::string path = std::getenv("PATH");
-  setenv("PATH", file("nowhere").c_str(), 1);
+  const test::EnvironmentVariable path("PATH", file("nowhere"));
   const test::ProgramRun done = run("plain", {"--scenes", kScene, "--steps", "2", "--seeds", "1"});
-  setenv("PATH", path.c_str(), 1);
   ASSERT_EQ(done.exitCode, 0) << done.err;
   EXPECT_THAT(done.out, HasSubstr("gnuplot is not installed"));
   EXPECT_THAT(test::readText(file("plain/index.html")), HasSubstr("gnuplot is not installed"));

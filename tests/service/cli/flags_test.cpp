@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "protocol/json_value.hpp"
-#include "renderer/base/clock.hpp"
-#include "renderer/film/exr.hpp"
-#include "tests/service/cli/run_program.hpp"
+#include "tests/service/cli/render_fixture.hpp"
 #include "tests/service/service_fixture.hpp"
+#include "tests/support/environment_variable.hpp"
 
 namespace limn {
 namespace {
@@ -14,36 +13,19 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-const std::string kScene = LIMN_BUILD_DIR "/scenes/cornell-box.glb";
-
-/// Renders with pipelines kept between them.
-class Flags : public ::testing::Test {
+class Flags : public test::RenderFixture {
  protected:
-  static void SetUpTestSuite() {
-    s_scratch = new test::ScratchDirectory;
-    setenv("XDG_CACHE_HOME", s_scratch->file("cache").c_str(), 1);
-  }
-  static void TearDownTestSuite() { delete s_scratch; }
-  static std::string file(const std::string& name) { return s_scratch->file(name); }
-
   /// Metadata of a small picture rendered with these flags.
   static std::map<std::string, std::string> rendered(std::vector<std::string> flags) {
-    const std::string output = file("out.exr");
-    flags.insert(flags.begin(), {"render", kScene, "--output", output, "--size", "24x20", "--stats", file("out.json")});
-    const test::ProgramRun run = test::runProgram(LIMN_PROGRAM, flags);
-    EXPECT_EQ(run.exitCode, 0) << run.err;
-    const Result<FilmImage> image = readExr(output);
-    if (!image) return {};
-    return {image->metadata.begin(), image->metadata.end()};
+    flags.insert(flags.end(), {"--stats", file("out.json")});
+    const FilmImage image = film("out.exr", std::move(flags));
+    return {image.metadata.begin(), image.metadata.end()};
   }
   static double statistic(const std::string& name) {
     const Result<protocol::JsonValue> stats = protocol::parseJson(test::readText(file("out.json")), 8);
     EXPECT_TRUE(stats.ok());
     return stats ? *stats->find(name)->number() : -1.0;
   }
-
- private:
-  static inline test::ScratchDirectory* s_scratch = nullptr;
 };
 
 TEST_F(Flags, TechniqueAndItsParameters) {
@@ -99,12 +81,10 @@ TEST_F(Flags, InfoTellsWhatTheFileHolds) {
 }
 
 TEST_F(Flags, ALostDeviceIsExit75) {
-  setenv("LIMN_LOSE_DEVICE_AT", "3", 1);
-  const test::ProgramRun run =
-      test::runProgram(LIMN_PROGRAM, {"render", kScene, "--output", file("lost.exr"), "--size", "24x20"});
-  unsetenv("LIMN_LOSE_DEVICE_AT");
-  EXPECT_EQ(run.exitCode, 75);
-  EXPECT_THAT(run.err, HasSubstr("limn render: vkQueueSubmit2 failed with VK_ERROR_DEVICE_LOST"));
+  const test::EnvironmentVariable lose("LIMN_LOSE_DEVICE_AT", "3");
+  const test::ProgramRun lost = run("lost.exr");
+  EXPECT_EQ(lost.exitCode, 75);
+  EXPECT_THAT(lost.err, HasSubstr("limn render: vkQueueSubmit2 failed with VK_ERROR_DEVICE_LOST"));
   EXPECT_FALSE(std::filesystem::exists(file("lost.exr")));
 }
 

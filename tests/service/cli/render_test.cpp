@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "protocol/json_value.hpp"
-#include "renderer/film/exr.hpp"
-#include "tests/service/cli/run_program.hpp"
+#include "tests/service/cli/render_fixture.hpp"
 
 namespace limn {
 namespace {
@@ -14,38 +13,13 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 
-const std::string kScene = LIMN_BUILD_DIR "/scenes/cornell-box.glb";
-
-/// Real renders, small ones. Pipelines are kept between them, so that only the first compiles.
-class Render : public ::testing::Test {
+class Render : public test::RenderFixture {
  protected:
-  static void SetUpTestSuite() {
-    s_scratch = new test::ScratchDirectory;
-    setenv("XDG_CACHE_HOME", s_scratch->file("cache").c_str(), 1);
-  }
-  static void TearDownTestSuite() { delete s_scratch; }
-
-  static std::string file(const std::string& name) { return s_scratch->file(name); }
-
-  static test::ProgramRun run(const std::string& output, std::vector<std::string> flags) {
-    flags.insert(flags.begin(), {"render", kScene, "--output", file(output), "--size", "24x20"});
-    return test::runProgram(LIMN_PROGRAM, flags);
-  }
-  /// The film of a render that must succeed.
-  static FilmImage film(const std::string& output, const std::vector<std::string>& flags) {
-    const test::ProgramRun done = run(output, flags);
-    EXPECT_EQ(done.exitCode, 0) << done.err;
-    Result<FilmImage> image = readExr(file(output));
-    return image ? image.take() : FilmImage{};
-  }
   static std::string metadata(const FilmImage& image, const std::string& key) {
     for (const auto& [name, value] : image.metadata)
       if (name == key) return value;
     return "";
   }
-
- private:
-  static inline test::ScratchDirectory* s_scratch = nullptr;
 };
 
 std::vector<std::string> layerNames(const FilmImage& image) {
