@@ -20,8 +20,8 @@ std::string headOf(const std::vector<std::string>& cells) {
 }
 
 std::string short2(double value) { return number(value, "%.2g"); }
-std::string withDeviation(double value, double deviation) {
-  return number(value, "%.2f") + " ± " + number(deviation, "%.2f");
+std::string withDeviation(double value, double deviation, const char* format = "%.2f") {
+  return number(value, format) + " ± " + number(deviation, format);
 }
 
 /// Another renderer has budgets of its own: its cells say when.
@@ -47,7 +47,7 @@ std::string convergenceFigures(const BenchResults& results) {
     for (const Convergence& c : scene.convergences) {
       std::vector<std::string> cells = {scene.name, c.technique, std::to_string(c.seeds)};
       for (const std::optional<Slope>& slope : {c.slopeAll, c.slope})
-        cells.push_back(slope ? withDeviation(slope->exponent, slope->deviation) : "–");
+        cells.push_back(slope ? withDeviation(slope->exponent, slope->deviation, "%.3f") : "–");
       cells.push_back(c.slopeAll ? verdictName(judgeSlope(*c.slopeAll)) : "–");
       cells.push_back(c.spread ? withDeviation(c.spread->ratio(), c.spread->deviation) : "–");
       lines += lineOf(cells);

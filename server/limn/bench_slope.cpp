@@ -1,5 +1,6 @@
 #include "server/limn/bench_slope.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "server/limn/bench_statistics.hpp"
@@ -32,24 +33,24 @@ std::optional<double> exponentOf(std::span<const double> x, const std::vector<do
   return fit ? std::optional(fit->exponent) : std::nullopt;
 }
 
-/// sum[i] over the pictures.
-std::vector<double> sumOf(std::span<const RadianceView> pictures) {
-  std::vector<double> sum(pictures[0].values.size());
-  for (const RadianceView& picture : pictures)
-    for (size_t i = 0; i < sum.size(); ++i) sum[i] += picture.values[i];
-  return sum;
-}
-
-/// relMSE of a picture against the mean of n pictures, of which it is one, as if that mean were the truth. The mean has
-/// moved towards the picture: the difference from it has only (n-1)/n of the variance.
-double errorAgainstMean(const RadianceView& picture, const std::vector<double>& sum, double n,
-                        const std::vector<double>& denominators) {
-  std::vector<double> quotients(denominators.size());
-  for (size_t i = 0; i < quotients.size(); ++i) {
-    const double difference = picture.values[i] - sum[i] / n;
-    if (difference != 0.0) quotients[i] = difference * difference / denominators[i] * n / (n - 1.0);
+/// Means of all pictures but one, which are dealt to two halves in turn.
+std::array<RadianceImage, 2> halvesOfOthers(std::span<const RadianceView> pictures, size_t own) {
+  const size_t values = pictures[own].values.size();
+  std::array<std::vector<double>, 2> sums = {std::vector<double>(values), std::vector<double>(values)};
+  std::array<double, 2> counts = {};
+  size_t half = 0;
+  for (size_t other = 0; other < pictures.size(); ++other) {
+    if (other == own) continue;
+    for (size_t i = 0; i < values; ++i) sums[half][i] += pictures[other].values[i];
+    ++counts[half];
+    half = 1 - half;
   }
-  return trimmedMean(std::move(quotients), kDiscardedShare);
+  std::array<RadianceImage, 2> halves;
+  for (size_t h = 0; h < 2; ++h) {
+    halves[h] = {pictures[own].width, pictures[own].height, {}};
+    for (const double sum : sums[h]) halves[h].values.push_back(float(sum / counts[h]));
+  }
+  return halves;
 }
 
 }  // namespace
@@ -99,12 +100,16 @@ Result<std::optional<SeedSpread>> spreadOfSeeds(std::span<const RadianceView> pi
                                                 std::span<const double> estimates, const Reference& reference) {
   const double n = double(pictures.size()), told = meanOf(estimates);
   if (pictures.size() < 3 || !(told > 0.0) || !std::isfinite(told)) return std::optional<SeedSpread>();
-  for (const RadianceView& picture : pictures)
-    if (const auto checked = relativeSquares(picture, reference); !checked) return checked.error();
-  const std::vector<double> denominators = relativeDenominators(reference), sum = sumOf(pictures);
+  // Against two halves of the others, a bright path of one picture is in one factor alone: its square counts in its own
+  // picture, where it may be cut off, and in no other.
   std::vector<double> between, withoutOne;
-  for (const RadianceView& picture : pictures) between.push_back(errorAgainstMean(picture, sum, n, denominators));
-  // The mean of all stays what the differences are taken from: its own doubt is 1/n of theirs.
+  for (size_t seed = 0; seed < pictures.size(); ++seed) {
+    const std::array<RadianceImage, 2> others = halvesOfOthers(pictures, seed);
+    const Result<ErrorMetrics> metrics =
+        compareImages(pictures[seed], {reference.mean, others[0].view(), others[1].view()});
+    if (!metrics) return metrics.error();
+    between.push_back(metrics->relMse);
+  }
   SeedSpread spread{meanOf(between), told, 0.0};
   for (size_t left = 0; left < pictures.size(); ++left)
     withoutOne.push_back((n * spread.between - between[left]) / (n * told - estimates[left]));

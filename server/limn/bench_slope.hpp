@@ -44,8 +44,8 @@ struct SeedSpread {
   double deviation = 0.0;              ///< standard error of between / told, by the jackknife over seeds
   double ratio() const { return between / told; }
 };
-/// `estimates` are of the same pictures. Nothing of fewer than three, or where nothing is told. Errors: those of
-/// relativeSquares().
+/// `pictures` of one size and their `estimates`; the reference's mean says what relMSE divides by. Nothing of fewer than
+/// three, or where nothing is told. Errors: those of compareImages().
 Result<std::optional<SeedSpread>> spreadOfSeeds(std::span<const RadianceView> pictures,
                                                 std::span<const double> estimates, const Reference& reference);
 
