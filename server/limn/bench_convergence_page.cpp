@@ -4,6 +4,7 @@
 namespace limn::bench {
 namespace {
 
+constexpr double kLeastRatio = 0.8, kMostRatio = 1.25;  // of variance between seeds over what is told
 const std::string kHowConverged =
     "<h3>With every quotient, over many seeds</h3>\n<p>Squared error of an unbiased estimator falls as one over the "
     "samples while these are independent of each other: slope −1. A picture shows that only where the rare bright "
@@ -17,8 +18,8 @@ const std::string kHowConverged =
     "differences from its halves. The goal, −1 ± 0.05 within a standard error, is <b>met</b> or missed as said; "
     "<b>steeper</b> is better than asked: scrambled Sobol points spread more evenly than independent ones.</p>\n"
     "<p>The last columns: the variance between seeds, relative as relMSE is, over the error that the films estimate of "
-    "themselves, at the most samples and both without the largest quotients. Near 1, the seeds differ by as much as "
-    "the error bar says; under 1, the error bar is on the safe side.</p>\n";
+    "themselves, at the most samples and both without the largest quotients. At 1 the seeds differ by as much as the "
+    "error bar says, over 1 by more; 0.8 to 1.25 is the goal.</p>\n";
 
 std::string slopeText(const std::optional<Slope>& slope) {
   return slope ? number(slope->exponent, "%.3f") + " ± " + number(slope->deviation, "%.3f") : "–";
@@ -30,13 +31,17 @@ std::string judged(const std::optional<Slope>& slope) {
   return marked(verdictName(verdict), verdict == SlopeVerdict::flatter);
 }
 
+std::string ratioText(const SeedSpread& spread) {
+  const std::string text = number(spread.ratio(), "%.2f") + " ± " + number(spread.deviation, "%.2f");
+  return marked(text, spread.ratio() < kLeastRatio || spread.ratio() > kMostRatio);
+}
+
 std::vector<std::string> cellsOf(const SceneResult& scene, const Convergence& c) {
   std::vector<std::string> cells = {escaped(scene.name), escaped(c.technique), std::to_string(c.seeds),
                                     number(c.levels.front().relMseAll), number(c.levels.back().relMseAll),
                                     slopeText(c.slopeAll), judged(c.slopeAll), slopeText(c.slope)};
   if (c.spread)
-    for (const std::string& cell : {number(c.spread->between), number(c.spread->told),
-                                    number(c.spread->ratio(), "%.2f") + " ± " + number(c.spread->deviation, "%.2f")})
+    for (const std::string& cell : {number(c.spread->between), number(c.spread->told), ratioText(*c.spread)})
       cells.push_back(cell);
   cells.resize(11, "–");
   return cells;
