@@ -63,9 +63,15 @@ std::string calibrationFigures(const BenchResults& results) {
   std::string text = "\n## What films say of their own error\n\n" +
                      headOf({"technique", "pictures", "left out", "intervals that hold the error",
                              "median of estimate / error"});
-  for (const TechniqueCalibration& c : results.calibrations)
-    text += lineOf({c.technique, std::to_string(c.trimmed.count), std::to_string(c.leftOut),
-                    number(100.0 * c.trimmed.heldShare, "%.0f") + " %", number(c.trimmed.medianRatio, "%.2f")});
+  for (const TechniqueCalibration& c : results.calibrations) {
+    std::vector<std::string> cells = {c.technique, std::to_string(c.trimmed.count), std::to_string(c.leftOut)};
+    if (c.trimmed.count > 0)
+      for (const std::string& cell :
+           {number(100.0 * c.trimmed.heldShare, "%.0f") + " %", number(c.trimmed.medianRatio, "%.2f")})
+        cells.push_back(cell);
+    cells.resize(5, "–");
+    text += lineOf(cells);
+  }
   return text;
 }
 

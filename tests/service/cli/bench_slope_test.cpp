@@ -174,7 +174,7 @@ TEST(BenchFigures, AreTheOnesThatAReadmeQuotes) {
   peer.points = {{"peer", 2.5, 0.0, 0.0, 1.0, 0.5, 0.6, 0.0, 0.0, {}}};
   results.scenes[0].curves = {own, peer};
   results.scenes[0].ablations = {{"path-tracing", {0.25, 10.0}, {0.75, 12.0}}, {"other", {0.5, 1.0}, {0.45, 1.0}}};
-  results.calibrations = {{"path-tracing", {110, 0.94, 0.96}, {}, 3}};
+  results.calibrations = {{"path-tracing", {110, 0.94, 0.96}, {}, 3}, {"other", {}, {}, 9}};
   results.hardCases = {{"dark box", "", "other", "leak", {0.5, 0.1, false}, {}, {}, {}, true, false, "it leaks"}};
   for (HardFigure HardCell::*figure : {&HardCell::energy, &HardCell::discarded, &HardCell::fireflies})
     results.hardCases[0].*figure = {0.0, 1.0, true};
@@ -183,7 +183,7 @@ TEST(BenchFigures, AreTheOnesThatAReadmeQuotes) {
   EXPECT_THAT(text, HasSubstr("| scene | technique | 0.5 s |\n|---|---|---|\n| room | path-tracing | 0.012 |\n"));
   EXPECT_THAT(text, HasSubstr("| room | Somebody | 0.5 at 2.5 s |\n"));
   EXPECT_THAT(text, HasSubstr("| room | path-tracing | 8 | -1.010 ± 0.030 | -0.700 ± 0.020 | met | 0.95 ± 0.04 |\n"));
-  EXPECT_THAT(text, HasSubstr("| path-tracing | 110 | 3 | 94 % | 0.96 |\n"));
+  EXPECT_THAT(text, HasSubstr("| path-tracing | 110 | 3 | 94 % | 0.96 |\n| other | 0 | 9 | – | – |\n"));
   EXPECT_THAT(text, HasSubstr("0.90 times as long at least (room, other), 3.00 times at most (room, path-tracing)"));
   EXPECT_THAT(text, HasSubstr("0 of 1 cells keep every promise. The largest deviation for its bound: 0.5 of 0.1 leak"));
   EXPECT_THAT(text, HasSubstr("- dark box, other: leak 0.5 of 0.1, it leaks\n"));
