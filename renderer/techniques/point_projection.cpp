@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <bit>
 
+#include "renderer/gpu/ray_counters.hpp"
 #include "renderer/techniques/point_projection_impl.hpp"
 #include "renderer/vk/transfer.hpp"
 #include "shaders/shared/bindings.h"
-#include "shaders/shared/film_shared.h"
 #include "shaders/shared/gather_shared.h"
 
 namespace limn {
@@ -28,12 +28,11 @@ std::vector<uint32_t> constantsOf(const SceneNeeds& needs) {
   return words;
 }
 
-Result<vk::Buffer> makeBuffer(vk::Device& device, const char* name, size_t size, vk::MemoryKind memory = vk::MemoryKind::deviceLocal) {
+Result<vk::Buffer> makeBuffer(vk::Device& device, const char* name, size_t size) {
   vk::BufferDesc desc;
   desc.owner = "point-projection";
   desc.name = name;
   desc.size = size;
-  desc.memory = memory;
   return vk::Buffer::create(device, desc);
 }
 
@@ -96,10 +95,9 @@ Result<void> PointProjectionTechnique::makeBuffers(const TechniqueContext& conte
     buffer = made.take();
   }
   if (!m_counters) {
-    auto counters = makeBuffer(context.device, "pointProjection.counters", shared::kCounterWords * sizeof(uint32_t), vk::MemoryKind::readback);
+    auto counters = gpu::makeRayCounters(context.device, "point-projection", "pointProjection.counters");
     if (!counters) return counters.error();
     m_counters = counters.take();
-    if (auto done = vk::fill(context.device, m_counters, 0, m_counters.size(), 0); !done) return done;
   }
   m_width = width;
   m_height = height;
@@ -257,14 +255,10 @@ double PointProjectionTechnique::secondsToGrid(uint32_t stride) const {
   return 0.0;
 }
 
-uint64_t PointProjectionTechnique::raysTraced() const {
-  const auto words = m_counters.as<uint32_t>();
-  const uint64_t shaded = uint64_t(words[shared::kCounterRays]) | uint64_t(words[shared::kCounterRays + 1]) << 32;
-  return shaded + m_light.raysTraced();
-}
+uint64_t PointProjectionTechnique::raysTraced() const { return gpu::countedRays(m_counters) + m_light.raysTraced(); }
 
 uint64_t PointProjectionTechnique::discardedSamples() const {
-  return m_counters.as<uint32_t>()[shared::kCounterDiscarded] + m_light.discardedSamples();
+  return gpu::countedDiscards(m_counters) + m_light.discardedSamples();
 }
 
 std::vector<PassUse> PointProjectionTechnique::passes() const {

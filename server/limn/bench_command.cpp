@@ -4,6 +4,7 @@
 #include "renderer/base/clock.hpp"
 #include "renderer/film/file_bytes.hpp"
 #include "renderer/vk/device.hpp"
+#include "server/limn/bench_figures.hpp"
 #include "server/limn/bench_growth.hpp"
 #include "server/limn/bench_page.hpp"
 #include "server/limn/bench_plots.hpp"
@@ -35,6 +36,10 @@ void printScene(const SceneResult& scene) {
                 "", last.parts->noise, last.parts->biasSquared, 1.96 * last.parts->biasDeviation, 100.0 * last.spread,
                 100.0 * last.toldSpread);
   }
+  for (const Convergence& c : scene.convergences)
+    if (c.slopeAll && c.spread)
+      std::printf("  %-18s  %u seeds: slope of every quotient %.3f +- %.3f, variance between seeds over told %.2f\n",
+                  c.technique.c_str(), c.seeds, c.slopeAll->exponent, c.slopeAll->deviation, c.spread->ratio());
   std::fflush(stdout);
 }
 
@@ -63,6 +68,7 @@ Result<void> writeReport(BenchResults& results) {
     results.absent.push_back("The plots are absent: gnuplot is not installed or failed; plots.gnuplot is there.");
   if (Result<void> done = writeText((output / "results.csv").string(), resultsCsv(results)); !done) return done;
   if (Result<void> done = writeText((output / "results.json").string(), resultsJson(results)); !done) return done;
+  if (Result<void> done = writeText((output / "figures.md").string(), resultsFigures(results)); !done) return done;
   return writeText((output / "index.html").string(), resultsPage(results, output.string()));
 }
 

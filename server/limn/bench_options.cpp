@@ -155,6 +155,9 @@ Result<void> readSizes(const Arguments& arguments, BenchOptions& options) {
   const Result<double> seconds = arguments.real("reference-seconds", options.referenceSeconds, 0.01, kLongest);
   if (!seconds) return seconds.error();
   options.referenceSeconds = *seconds;
+  const Result<uint64_t> convergence = arguments.integer("convergence", options.convergence, 3, 1000);
+  if (!convergence) return convergence.error();
+  options.convergence = uint32_t(*convergence);
   options.growth = arguments.has("growth");
   options.ablation = arguments.has("ablation");
   return {};
@@ -178,6 +181,7 @@ CommandSpec benchSpec() {
            {"reference-seconds", "S", "most time for one scene's reference (default: 200)"},
            {"pictures", "LIST.csv", "another renderer's pictures, lines of scene,name,seconds,file.exr: more curves"},
            {"hard-cases", "FILE.json", "what the tests left in BUILD/hard_cases.json: a table of hard cases"},
+           {"convergence", "SEEDS", "also slope and spread of unbiased techniques: 64x64 pixels, 4 to 64 samples"},
            {"ablation", "", "also time per step with everything at work against only what each scene needs"},
            {"growth", "", "also time per step and memory against triangles, lights, points, pixels of made scenes"}}};
 }

@@ -36,6 +36,7 @@ struct BenchOptions {
   double referenceSeconds = 200.0;     ///< most time for one scene's reference [s]
   std::vector<Setting> settings;
   bool growth = false, ablation = false;
+  uint32_t convergence = 0;            ///< seeds of small pictures for slope and spread; 0: not measured
 };
 
 CommandSpec benchSpec();

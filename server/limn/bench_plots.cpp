@@ -35,6 +35,18 @@ void addErrorPlots(const BenchResults& results, std::vector<Plot>& plots) {
   plots.push_back(samples);
 }
 
+void addConvergencePlot(const BenchResults& results, std::vector<Plot>& plots) {
+  Plot plot{"convergence", "Error of every quotient against samples, many seeds", "samples of a pixel", "relMSE", {}};
+  for (const SceneResult& scene : results.scenes)
+    for (const Convergence& convergence : scene.convergences) {
+      Plot::Line line{scene.name + ", " + convergence.technique, {}};
+      for (const Convergence::Level& level : convergence.levels)
+        line.points.push_back({level.samples, level.relMseAll});
+      plot.lines.push_back(line);
+    }
+  plots.push_back(plot);
+}
+
 void addCalibrationPlot(const BenchResults& results, std::vector<Plot>& plots) {
   Plot plot{"calibration", "What the film says of its error", "true relMSE", "estimated relMSE", {}, true};
   for (const TechniqueCalibration& calibration : results.calibrations) {
@@ -94,6 +106,7 @@ bool drawable(const Sample& point) {
 std::vector<Plot> plotsOf(const BenchResults& results) {
   std::vector<Plot> plots;
   addErrorPlots(results, plots);
+  addConvergencePlot(results, plots);
   addCalibrationPlot(results, plots);
   addGrowthPlots(results, plots);
   // A log axis needs something to show.

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "server/limn/bench_convergence.hpp"
 #include "server/limn/bench_hard_cases.hpp"
 #include "server/limn/bench_run.hpp"
 #include "server/limn/bench_statistics.hpp"
@@ -49,6 +50,7 @@ struct SceneResult {
   std::vector<Run> runs;
   std::vector<Curve> curves;
   std::vector<Ablation> ablations;
+  std::vector<Convergence> convergences;
 };
 constexpr double kReferenceMargin = 20.0;
 

@@ -48,6 +48,8 @@ class SceneBench {
     if (Result<void> done = measureAll(); !done) return done.error();
     if (m_options.ablation)
       if (Result<void> done = measureAblations(); !done) return done.error();
+    if (m_options.convergence > 0)
+      if (Result<void> done = measureConvergences(); !done) return done.error();
     Result<ReferencePictures> reference = makeReference();
     if (!reference) return reference.error();
     if (Result<void> done = reportCurves(*reference); !done) return done.error();
@@ -87,6 +89,18 @@ class SceneBench {
       Result<Ablation> ablation = measureAblation(m_device, m_loaded, configOf(name));
       if (!ablation) return ablation.error();
       m_result.ablations.push_back(ablation.take());
+    }
+    return {};
+  }
+
+  /// A biased technique's error does not go on falling with the samples.
+  Result<void> measureConvergences() {
+    for (const std::string& technique : m_options.techniques) {
+      if (findTechnique(technique)->biased) continue;
+      Result<Convergence> measured =
+          measureConvergence(m_device, m_loaded, m_options, m_result.name, configOf(technique));
+      if (!measured) return measured.error();
+      m_result.convergences.push_back(measured.take());
     }
     return {};
   }

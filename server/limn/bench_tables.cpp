@@ -153,6 +153,41 @@ void writeAblation(JsonWriter& json, const Ablation& ablation) {
   json.endObject();
 }
 
+void writeSlope(JsonWriter& json, const char* name, const std::optional<Slope>& slope) {
+  if (!slope) return;
+  json.key(name);
+  json.beginObject();
+  json.field("exponent", slope->exponent);
+  json.field("deviation", slope->deviation);
+  json.field("verdict", std::string(verdictName(judgeSlope(*slope))));
+  json.endObject();
+}
+
+void writeConvergence(JsonWriter& json, const Convergence& convergence) {
+  json.beginObject();
+  json.field("technique", convergence.technique);
+  json.field("seeds", convergence.seeds);
+  json.key("levels");
+  json.beginArray();
+  for (const Convergence::Level& level : convergence.levels) {
+    json.beginObject();
+    json.field("samples", level.samples);
+    json.field("relMse", level.relMse);
+    json.field("relMseAll", level.relMseAll);
+    json.endObject();
+  }
+  json.endArray();
+  writeSlope(json, "slope", convergence.slope);
+  writeSlope(json, "slopeAll", convergence.slopeAll);
+  if (convergence.spread) {
+    json.field("betweenSeeds", convergence.spread->between);
+    json.field("told", convergence.spread->told);
+    json.field("spreadRatio", convergence.spread->ratio());
+    json.field("spreadRatioDeviation", convergence.spread->deviation);
+  }
+  json.endObject();
+}
+
 void writeScene(JsonWriter& json, const SceneResult& scene) {
   json.beginObject();
   json.field("scene", scene.name);
@@ -170,6 +205,7 @@ void writeScene(JsonWriter& json, const SceneResult& scene) {
   writeList(json, "curves", scene.curves, writeCurve);
   writeList(json, "runs", scene.runs, writeRun);
   writeList(json, "ablation", scene.ablations, writeAblation);
+  writeList(json, "convergence", scene.convergences, writeConvergence);
   json.endObject();
 }
 

@@ -1,0 +1,139 @@
+#include "server/limn/bench_convergence.hpp"
+
+#include <algorithm>
+
+#include "renderer/vk/device.hpp"
+#include "server/limn/bench_reference.hpp"
+#include "server/limn/bench_statistics.hpp"
+
+namespace limn::bench {
+namespace {
+
+constexpr double kFirstReferenceSeconds = 1.0;  // its rate is not known before
+
+/// One seed: its picture whenever a multiple of kFewestSamples is reached, and what the film says of the last.
+struct SeedRun {
+  std::vector<RunningMean> means;
+  double estimate = 0.0;               ///< relMSE
+};
+
+Result<RunningMean> runningMean(Session& session) {
+  const Result<FilmImage> film = session.readFilm();
+  if (!film) return film.error();
+  const Result<RadianceView> radiance = radianceOf(*film, "film");
+  if (!radiance) return radiance.error();
+  const FilmLayer* samples = film->find("samples");
+  if (!samples) return Error{"bad-image", "the film has no sample counts", ""};
+  const auto [least, most] = std::minmax_element(samples->data.begin(), samples->data.end());
+  if (*least != *most) return Error{"bad-image", "pixels have different numbers of samples", ""};
+  return RunningMean{uint64_t(*least),
+                     {radiance->width, radiance->height, {radiance->values.begin(), radiance->values.end()}}};
+}
+
+Result<SeedRun> runSeed(vk::Device& device, const LoadedScene& loaded, const SessionConfig& config) {
+  Result<std::unique_ptr<BenchSession>> made = BenchSession::create(device, loaded, config);
+  if (!made) return made.error();
+  Session& session = ***made;
+  SeedRun run;
+  uint64_t samples = 0;
+  for (uint32_t step = 1; samples < kMostSamples; ++step) {
+    if (Result<void> done = session.runSteps(step); !done) return done.error();
+    Result<RunningMean> mean = runningMean(session);
+    if (!mean) return mean.error();
+    samples = mean->samples;
+    if (samples % kFewestSamples == 0) run.means.push_back(mean.take());
+  }
+  const Result<Status> status = session.status();
+  if (!status) return status.error();
+  run.estimate = status->estimatedError;
+  return run;
+}
+
+/// Halves whose noise is small beside that of the runs' own pictures, which is all that their product needs.
+Result<ReferencePictures> makeReference(vk::Device& device, const LoadedScene& loaded, const BenchOptions& options,
+                                        const std::string& name) {
+  SessionConfig config = referenceConfig(options);
+  config.width = config.height = kConvergenceSide;
+  Result<ReferencePictures> opened = ReferencePictures::open(options.references, name, loaded, config);
+  if (!opened) return opened.error();
+  ReferencePictures reference = opened.take();
+  const double wanted = double(options.convergence) * double(kMostSamples);
+  double seconds = kFirstReferenceSeconds;
+  while (double(reference.samples()) < wanted) {
+    if (Result<void> done = reference.refine(device, loaded, seconds); !done) return done.error();
+    if (Result<void> done = reference.save(); !done) return done.error();
+    const double left = wanted / double(reference.samples()) - 1.0;
+    seconds = std::max(0.0, left * reference.seconds());
+  }
+  return reference;
+}
+
+/// Errors of one seed at one level: means over its blocks.
+Result<Convergence::Level> errorOfBlocks(const SeedRun& run, uint64_t samples, const Reference& reference) {
+  Convergence::Level level{double(samples), 0.0, 0.0};
+  const std::vector<RadianceImage> blocks = blockMeans(run.means, samples);
+  for (const RadianceImage& block : blocks) {
+    const Result<ErrorMetrics> metrics = compareImages(block.view(), reference);
+    if (!metrics) return metrics.error();
+    level.relMse += metrics->relMse / double(blocks.size());
+    level.relMseAll += metrics->relMseAll / double(blocks.size());
+  }
+  return level;
+}
+
+Result<void> addLevels(const std::vector<SeedRun>& runs, const Reference& reference, Convergence& result) {
+  std::vector<double> samples;
+  std::vector<std::vector<double>> trimmed(runs.size()), all(runs.size());
+  for (uint64_t n = kFewestSamples; n <= kMostSamples; n *= 2) {
+    Convergence::Level mean{double(n), 0.0, 0.0};
+    for (size_t seed = 0; seed < runs.size(); ++seed) {
+      const Result<Convergence::Level> level = errorOfBlocks(runs[seed], n, reference);
+      if (!level) return level.error();
+      trimmed[seed].push_back(level->relMse);
+      all[seed].push_back(level->relMseAll);
+      mean.relMse += level->relMse / double(runs.size());
+      mean.relMseAll += level->relMseAll / double(runs.size());
+    }
+    result.levels.push_back(mean);
+    samples.push_back(mean.samples);
+  }
+  result.slope = slopeOfSeeds(samples, trimmed);
+  result.slopeAll = slopeOfSeeds(samples, all);
+  return {};
+}
+
+Result<std::optional<SeedSpread>> lastSpread(const std::vector<SeedRun>& runs, const Reference& reference) {
+  std::vector<RadianceView> pictures;
+  std::vector<double> estimates;
+  for (const SeedRun& run : runs) {
+    pictures.push_back(run.means.back().picture.view());
+    estimates.push_back(run.estimate);
+  }
+  return spreadOfSeeds(pictures, estimates, reference);
+}
+
+}  // namespace
+
+Result<Convergence> measureConvergence(vk::Device& device, const LoadedScene& loaded, const BenchOptions& options,
+                                       const std::string& name, SessionConfig config) {
+  config.width = config.height = kConvergenceSide;
+  config.sampleCount = uint32_t(kMostSamples);
+  std::vector<SeedRun> runs;
+  for (config.seed = 0; config.seed < options.convergence; ++config.seed) {
+    Result<SeedRun> run = runSeed(device, loaded, config);
+    if (!run) return run.error();
+    runs.push_back(run.take());
+  }
+  const Result<ReferencePictures> reference = makeReference(device, loaded, options, name);
+  if (!reference) return reference.error();
+  Convergence result;
+  result.technique = config.technique;
+  result.seeds = options.convergence;
+  if (Result<void> done = addLevels(runs, reference->reference(), result); !done) return done.error();
+  Result<std::optional<SeedSpread>> spread = lastSpread(runs, reference->reference());
+  if (!spread) return spread.error();
+  result.spread = spread.take();
+  return result;
+}
+
+}  // namespace limn::bench

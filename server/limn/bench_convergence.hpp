@@ -1,0 +1,31 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/limn/bench_run.hpp"
+#include "server/limn/bench_slope.hpp"
+
+namespace limn::bench {
+
+/// How an unbiased technique converges on one scene: small pictures of many seeds, so that rare bright paths are met.
+struct Convergence {
+  struct Level {
+    double samples = 0.0;              ///< of a pixel, in one picture
+    double relMse = 0.0, relMseAll = 0.0;  ///< means over blocks of so many samples and over seeds
+  };
+  std::string technique;
+  uint32_t seeds = 0;
+  std::vector<Level> levels;           ///< each twice the samples of the one before
+  std::optional<Slope> slope, slopeAll;///< of relMse and relMseAll over samples
+  std::optional<SeedSpread> spread;    ///< at the last level
+};
+constexpr uint32_t kConvergenceSide = 64;                  ///< [pixel]
+constexpr uint64_t kFewestSamples = 4, kMostSamples = 64;  ///< of a pixel, in pictures of the first and last level
+
+/// Runs `options.convergence` seeds of a technique, and a reference of as many samples as they have together, which is
+/// kept beside the others as `name`. Errors: "bad-image" when pixels have different numbers of samples.
+Result<Convergence> measureConvergence(vk::Device& device, const LoadedScene& loaded, const BenchOptions& options,
+                                       const std::string& name, SessionConfig config);
+
+}  // namespace limn::bench
