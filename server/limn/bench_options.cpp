@@ -12,7 +12,7 @@ constexpr double kLongest = 1e6;  // [s]
 constexpr const char* kDefaultBudgets = "0.25,0.5,1,2,4,8";
 constexpr const char* kAdaptive = "adaptive";
 /// Of the generated scenes, those that stand for a kind of light transport each.
-constexpr const char* kDefaultScenes[] = {"cornell-box", "cornell-point", "cornell-glossy", "cornell-caustic",
+constexpr const char* kDefaultScenes[] = {"cornell-box", "cornell-point", "cornell-indirect", "cornell-glossy", "cornell-caustic",
                                           "veach-mis",   "ajar-door",     "colonnade",      "thin-furniture",
                                           "many-lights", "plant",         "demo"};
 
@@ -170,7 +170,7 @@ CommandSpec benchSpec() {
           "Speed against error of every technique on every scene: CSV, JSON, plots and one page, index.html.",
           {},
           {{"output", "DIR", "where the tables, the plots, the page index.html and references go", false, "", true},
-           {"scenes", "DIR|LIST", "files, folders, names of generated scenes (default: eleven generated ones)"},
+           {"scenes", "DIR|LIST", "files, folders, names of generated scenes (default: twelve generated ones)"},
            {"techniques", "LIST", "which (default: all)"},
            {"budgets", "T1,T2,...", "seconds from the first step (default: 0.25,0.5,1,2,4,8)", false, "budget"},
            {"steps", "N1,N2,...", "passes instead of seconds: the same pictures on every run", false, "budget"},

@@ -33,16 +33,17 @@ float brightestAround(uint i) {
 float weightOf(uint texel) { return uintBitsToFloat(clusterRun[texel]); }
 
 // Weights of the texels, each invocation those of a stretch: importance[] holds their luminances, clusterRun[] what they would
-// bring at radiance 1, and then the weights. Returns their sum; `even` is the luminance that all texels count for at least.
+// bring at radiance 1, and then the weights. Returns their sum; `even` is the luminance that all texels count for at least,
+// infinite where the micro-buffer knows of no light.
 float weighTexels(out float even) {
   float brought = 0.0, factors = 0.0, sum = 0.0;
   for (uint i = 0u; i < kGroup; ++i) brought += sumOfLanes[i], factors += factorsOfLanes[i];
   barrier();
-  even = brought > 0.0 ? kEvenShare / (1.0 - kEvenShare) * brought / factors : 1.0;
+  even = brought > 0.0 ? kEvenShare / (1.0 - kEvenShare) * brought / factors : kInfinity;
   uint count = push.microSize * push.microSize, stretch = (count + kGroup - 1u) / kGroup;
   uint first = min(gl_LocalInvocationIndex * stretch, count), end = min(first + stretch, count);
   for (uint i = first; i < end; ++i) {
-    clusterRun[i] = floatBitsToUint(weightOf(i) * (even + brightestAround(i)));
+    clusterRun[i] = floatBitsToUint(weightOf(i) * (brought > 0.0 ? even + brightestAround(i) : 1.0));
     sum += weightOf(i);
   }
   sumOfLanes[gl_LocalInvocationIndex] = sum;
