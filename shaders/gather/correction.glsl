@@ -14,12 +14,13 @@ layout(binding = BINDING_COUNTERS, scalar) buffer Counters { uint counters[]; };
 
 // Share of the rays that is drawn as if all texels were equally bright: what a dark texel hides is found, and the quotient of
 // a correction and its probability stays bounded.
-const float kEvenShare = 0.5;
+const float kEvenShare = 0.3;
+// Of the brightest texel beside: what is bright may begin in this one.
+const float kBesideShare = 0.25;
 // A ray counts for at most this many times what its texel was drawn for. Where a gather missed something small and bright
 // altogether, one ray in many gathers would find it and be a blotch: that light is cut, and is the bias of a correction.
-const float kMostQuotient = 4.0;
+const float kMostQuotient = 12.0;
 
-// Luminance in the micro-buffer around texel `i`: what is bright may begin in the texel beside.
 float brightestAround(uint i) {
   ivec2 t = ivec2(i % push.microSize, i / push.microSize);
   float most = 0.0;
@@ -30,20 +31,25 @@ float brightestAround(uint i) {
   return most;
 }
 
+// Luminance that texel `i` is drawn for. Where nothing was seen it may be as bright as on the mean.
+float expectedAt(uint i, float mean) {
+  float own = importance[i] == kNothingSeen ? mean : importance[i];
+  return kEvenShare / (1.0 - kEvenShare) * mean + max(own, kBesideShare * brightestAround(i));
+}
+
 float weightOf(uint texel) { return uintBitsToFloat(clusterRun[texel]); }
 
 // Weights of the texels, each invocation those of a stretch: importance[] holds their luminances, clusterRun[] what they would
-// bring at radiance 1, and then the weights. Returns their sum; `even` is the luminance that all texels count for at least,
-// infinite where the micro-buffer knows of no light.
-float weighTexels(out float even) {
+// bring at radiance 1, and then the weights. Returns their sum, and the mean luminance.
+float weighTexels(out float mean) {
   float brought = 0.0, factors = 0.0, sum = 0.0;
   for (uint i = 0u; i < kGroup; ++i) brought += sumOfLanes[i], factors += factorsOfLanes[i];
   barrier();
-  even = brought > 0.0 ? kEvenShare / (1.0 - kEvenShare) * brought / factors : kInfinity;
+  mean = brought > 0.0 ? brought / factors : 0.0;
   uint count = push.microSize * push.microSize, stretch = (count + kGroup - 1u) / kGroup;
   uint first = min(gl_LocalInvocationIndex * stretch, count), end = min(first + stretch, count);
   for (uint i = first; i < end; ++i) {
-    clusterRun[i] = floatBitsToUint(weightOf(i) * (brought > 0.0 ? even + brightestAround(i) : 1.0));
+    clusterRun[i] = floatBitsToUint(weightOf(i) * (mean > 0.0 ? expectedAt(i, mean) : 1.0));
     sum += weightOf(i);
   }
   sumOfLanes[gl_LocalInvocationIndex] = sum;
@@ -81,7 +87,7 @@ vec3 radianceAlong(Site s, vec3 dirW, uint alphaState, out bool known) {
 // What the rays of this invocation add to the site's light. Begins and ends with the other invocations at barriers.
 IndirectTexel correction(Site s, uint key) {
   IndirectTexel sum = IndirectTexel(vec3(0.0), 0.0, vec3(0.0), kIndirectSampled);
-  float even, total = weighTexels(even);
+  float mean, total = weighTexels(mean);
   if (!(total > 0.0)) return sum;
   for (uint ray = gl_LocalInvocationIndex; ray < push.correctionRays; ray += kGroup) {
     Sampler sampler_ = makeSampler(key, ray, push.seed);
@@ -93,8 +99,8 @@ IndirectTexel correction(Site s, uint key) {
     vec3 truth = radianceAlong(s, dirW, sampler_.key ^ ray, known);
     if (!known) continue;
     float scale = total / (float(push.correctionRays) * weightOf(i));
-    float brightest = kMostQuotient * (even + brightestAround(i));
-    truth *= min(1.0, brightest / max(luminance(truth), 1e-30));
+    float brightest = kMostQuotient * expectedAt(i, mean);
+    if (mean > 0.0) truth *= min(1.0, brightest / max(luminance(truth), 1e-30));
     addLight(sum, s, q, truth * scale);
     vec3 middle = microTexel(i, push.microSize);
     addLight(sum, s, middle, seen(i, toWorldOf(s, normalize(middle))).rgb * -scale);

@@ -29,6 +29,7 @@ const float kNarrowestSplat = kSelection == kEveryPoint ? 1.0 : 0.88, kWidestSpl
 const float kDiskShare = 1.3;  // of the area a point stands for: disks that only just fill a surface leave gaps between them
 const uint kHoleTurns = 2u;    // texels that holes close from their rims inwards
 const uint kEmpty = 0xffffffffu;
+const float kNothingSeen = -1.0;  // luminance of an empty texel
 
 layout(local_size_x = 64, local_size_x_id = 17) in;
 layout(binding = BINDING_PIXEL_LIST, scalar) readonly buffer SiteList { uint siteList[]; };
@@ -252,12 +253,13 @@ IndirectTexel reduce(Site s) {
   IndirectTexel sum = IndirectTexel(vec3(0.0), 0.0, vec3(0.0), kIndirectSampled);
   float brought = 0.0, factors = 0.0;
   for (uint i = gl_LocalInvocationIndex; i < push.microSize * push.microSize; i += kGroup) {
-    vec3 q = microTexel(i, push.microSize), radiance = seen(i, toWorldOf(s, normalize(q))).rgb;
-    float factor = addLight(sum, s, q, radiance);
+    vec3 q = microTexel(i, push.microSize);
+    vec4 radiance = seen(i, toWorldOf(s, normalize(q)));
+    float factor = addLight(sum, s, q, radiance.rgb);
 #ifdef LIMN_GATHER_CORRECT
-    importance[i] = luminance(radiance);
+    importance[i] = radiance.w > 0.0 ? luminance(radiance.rgb) : kNothingSeen;
     clusterRun[i] = floatBitsToUint(factor);
-    brought += factor * importance[i];
+    brought += factor * luminance(radiance.rgb);
     factors += factor;
 #endif
   }
