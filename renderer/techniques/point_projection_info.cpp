@@ -18,7 +18,7 @@ const TechniqueInfo& pointProjectionInfo() {
        {"microSize", "Side of the micro-buffer", "texels", integer, 8, 32, 32, relight},
        {"bounces", "Indirect bounces; 0 is direct light only", "bounces", integer, 0, 64, 32, relight},
        {"bouncePoints", "Points at which bounces are gathered; the others interpolate", "points", integer, 256, 65536, 16384, rebuild},
-       {"paths", "Paths from either side of such a point; 0 gathers bounces by projection instead, one after the other", "paths", integer, 0, 256, 4, relight},
+       {"paths", "Paths from either side of such a point at first, then four times as many; 0 gathers bounces by projection instead, one after the other", "paths", integer, 0, 256, 4, relight},
        {"relightSamples", "Shadow rays a point", "rays", integer, 1, 64, 4, relight},
        {"startGrid", "Distance of the first gathered pixels; rounded to a power of two", "pixels", integer, 2, 16, 16, regather},
        {"threshold", "Incoherence over which a pixel of the first level is gathered; doubles a level", "1", real, 0.0, 10.0, 0.3, regather},
