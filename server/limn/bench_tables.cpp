@@ -163,20 +163,19 @@ void writeSlope(JsonWriter& json, const char* name, const std::optional<Slope>& 
   json.endObject();
 }
 
+void writeLevel(JsonWriter& json, const Convergence::Level& level) {
+  json.beginObject();
+  json.field("samples", level.samples);
+  json.field("relMse", level.relMse);
+  json.field("relMseAll", level.relMseAll);
+  json.endObject();
+}
+
 void writeConvergence(JsonWriter& json, const Convergence& convergence) {
   json.beginObject();
   json.field("technique", convergence.technique);
   json.field("seeds", convergence.seeds);
-  json.key("levels");
-  json.beginArray();
-  for (const Convergence::Level& level : convergence.levels) {
-    json.beginObject();
-    json.field("samples", level.samples);
-    json.field("relMse", level.relMse);
-    json.field("relMseAll", level.relMseAll);
-    json.endObject();
-  }
-  json.endArray();
+  writeList(json, "levels", convergence.levels, writeLevel);
   writeSlope(json, "slope", convergence.slope);
   writeSlope(json, "slopeAll", convergence.slopeAll);
   if (convergence.spread) {
