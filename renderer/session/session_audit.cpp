@@ -25,9 +25,11 @@ double Session::Impl::auditShare() const {
   return found == parameters.end() ? 0.0 : found->second;
 }
 
-// The first pass is not kept waiting; what it owes is made good later.
+bool Session::Impl::everyPixelIsShown() const { return progress.passes > 0 || progress.fillStride <= 1; }
+
+// The first picture is not kept waiting; what it owes is made good later.
 bool Session::Impl::auditIsDue(double seconds) const {
-  const bool early = progress.passes == 0 || auditOwed < kLeastShareOfQuantum * seconds;
+  const bool early = !everyPixelIsShown() || auditOwed < kLeastShareOfQuantum * seconds;
   return auditShare() > 0.0 && config.auditPathsPerPass == 0 && !early;
 }
 
@@ -54,7 +56,7 @@ Result<void> Session::Impl::estimateError() {
   auto told = statistics->means(device, *film);
   if (!told) return told.error();
   means = *told;
-  if (technique->info().biased && (auditShare() == 0.0 || progress.passes == 0)) {
+  if (technique->info().biased && (auditShare() == 0.0 || !everyPixelIsShown())) {
     error = {};
     return {};
   }

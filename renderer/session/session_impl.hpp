@@ -66,6 +66,7 @@ struct Session::Impl {
   // session_audit.cpp
   Result<void> restartAudit(bool mayCompile);
   double auditShare() const;
+  bool everyPixelIsShown() const;
   bool auditIsDue(double seconds) const;
   Result<void> auditFor(double seconds);
   Result<void> auditPass();

@@ -21,16 +21,13 @@ constexpr uint32_t kTiles = 1024;
 constexpr uint32_t kLeastTileSide = 4;
 /// Pixels of a tile at most.
 constexpr uint32_t kSets = 16;
-/// Samples of a pixel at level 0. With each level they double, and the pixels as well: noise of samples and choice of
-/// pixels fall together.
+/// Of every pixel, to begin with.
 constexpr uint32_t kFirstSamples = 4;
 /// Samples a dispatch takes of a pixel, for the reason that path_tracing.cpp gives.
 constexpr uint32_t kSamplesAtOnce = 4;
 constexpr uint32_t kLeastPiece = 64, kLargestPiece = 512;
 /// The film's samples and the audit's must not be the same.
 constexpr uint32_t kSeedSalt = 0x3c6ef372u;
-
-uint32_t samplesOf(uint32_t level) { return kFirstSamples << level; }
 
 /// Pixels [begin, end) along one side of tile `i` of `tiles`: all tiles are of one size, to a pixel.
 struct Range {
@@ -142,29 +139,42 @@ std::vector<vk::Binding> Audit::recordBindings(const TechniqueContext& context) 
 }
 
 Result<void> Audit::restart(const TechniqueContext& context) {
-  m_level = 0;
+  m_whole = {};
+  m_goal = {1, kFirstSamples};
   m_piece = {};
   m_paths = 0;
   return gpu::runNow(context.device, [&](vk::CommandRecorder& r) { m_film->recordClear(r); });
 }
 
-uint32_t Audit::entriesOf(uint32_t level) const { return m_tilesX * m_tilesY * std::min(1u << std::min(level, 31u), kSets); }
+uint32_t Audit::entriesOf(Extent extent) const { return m_tilesX * m_tilesY * extent.sets; }
 
-// A piece takes its entries to the level's samples, from those of the level before or from none.
-void Audit::beginPiece(uint32_t first, double seconds) {
-  if (first == entriesOf(m_level)) {
-    ++m_level;
-    first = 0;
+// Of a good picture the error is far below the noise of a few samples: it is looked at in few places, and long. The variance
+// of n samples of each of N pixels is that of the pixels over N, and that of a product of two halves' noise over n²N.
+Result<void> Audit::chooseGoal(const TechniqueContext& context) {
+  m_whole = m_goal;
+  const auto records = compare(context);
+  if (!records) return records.error();
+  const bool deeper = m_whole.sets == kSets || noiseOutweighsChoice(*records, m_tilesX, m_tilesY);
+  (deeper ? m_goal.samples : m_goal.sets) *= 2;
+  return {};
+}
+
+Result<void> Audit::beginPiece(const TechniqueContext& context, double seconds) {
+  uint32_t first = m_piece.first + m_piece.count;
+  if (first == entriesOf(m_goal)) {
+    if (auto chosen = chooseGoal(context); !chosen) return chosen;
+    first = m_goal.samples > m_whole.samples ? 0 : entriesOf(m_whole);
   }
-  const uint32_t before = m_level > 0 ? entriesOf(m_level - 1) : 0;
-  const uint32_t end = first < before ? before : entriesOf(m_level);
+  const uint32_t end = first < entriesOf(m_whole) ? entriesOf(m_whole) : entriesOf(m_goal);
   const double fits = seconds < 1.0 ? double(m_rate.itemsIn(seconds)) / kSamplesAtOnce : double(kLargestPiece);
   const uint32_t count = uint32_t(std::clamp(fits, double(kLeastPiece), double(kLargestPiece)));
-  m_piece = {first, std::min(count, end - first), first < before ? samplesOf(m_level - 1) : 0};
+  m_piece = {first, std::min(count, end - first), first < entriesOf(m_whole) ? m_whole.samples : 0};
+  return {};
 }
 
 Result<void> Audit::advance(const TechniqueContext& context, double seconds) {
-  if (m_piece.samples == (m_piece.count > 0 ? samplesOf(m_level) : 0)) beginPiece(m_piece.first + m_piece.count, seconds);
+  if (m_piece.count == 0 || m_piece.samples == m_goal.samples)
+    if (auto begun = beginPiece(context, seconds); !begun) return begun;
   const shared::PathTracingPush push{.firstEntry = m_piece.first,
                                      .entryCount = m_piece.count,
                                      .firstSample = m_piece.samples,
@@ -185,22 +195,28 @@ Result<void> Audit::advance(const TechniqueContext& context, double seconds) {
   return {};
 }
 
-// All pixels of the level before are known, and of this one the pieces that are done.
+// All pixels of the extent before are known, and of this one the pieces that are done.
 uint32_t Audit::knownEntries() const {
-  const bool whole = m_piece.samples == samplesOf(m_level);
-  const uint32_t ended = m_piece.first + (whole ? m_piece.count : 0);
-  const uint32_t known = std::max(ended, m_level > 0 ? entriesOf(m_level - 1) : 0);
-  return known < entriesOf(0) ? 0 : known;
+  const bool done = m_piece.samples == m_goal.samples;
+  const uint32_t ended = m_piece.first + (done ? m_piece.count : 0);
+  const uint32_t known = std::max(ended, entriesOf(m_whole));
+  return known < m_tilesX * m_tilesY ? 0 : known;
 }
 
-Result<FilmError> Audit::estimate(const TechniqueContext& context) {
+Result<std::span<const shared::AuditRecord>> Audit::compare(const TechniqueContext& context) {
   const shared::AuditPush push{knownEntries()};
-  if (push.entryCount == 0) return FilmError{};
   auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
     m_compare.record(r, recordBindings(context), push, (push.entryCount + 63) / 64);
   });
   if (!done) return done.error();
-  return estimateFromAudit(m_records.as<shared::AuditRecord>().first(push.entryCount), m_tilesX, m_tilesY);
+  return std::span<const shared::AuditRecord>(m_records.as<shared::AuditRecord>()).first(push.entryCount);
+}
+
+Result<FilmError> Audit::estimate(const TechniqueContext& context) {
+  if (knownEntries() == 0) return FilmError{};
+  const auto records = compare(context);
+  if (!records) return records.error();
+  return estimateFromAudit(*records, m_tilesX, m_tilesY);
 }
 
 }  // namespace limn

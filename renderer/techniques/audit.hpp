@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <span>
 
 #include "renderer/gpu/tailored_pass.hpp"
 #include "renderer/techniques/technique.hpp"
@@ -32,6 +33,10 @@ class Audit {
   Result<FilmError> estimate(const TechniqueContext& context);
 
  private:
+  /// Pixels of every tile, and samples of each of them.
+  struct Extent {
+    uint32_t sets = 0, samples = 0;
+  };
   /// Entries that are sampled together, and how far they are.
   struct Piece {
     uint32_t first = 0, count = 0;
@@ -42,9 +47,11 @@ class Audit {
   Result<void> makeList(const TechniqueContext& context);
   std::vector<vk::Binding> traceBindings(const TechniqueContext& context) const;
   std::vector<vk::Binding> recordBindings(const TechniqueContext& context) const;
-  uint32_t entriesOf(uint32_t level) const;
+  uint32_t entriesOf(Extent extent) const;
   uint32_t knownEntries() const;
-  void beginPiece(uint32_t first, double seconds);
+  Result<std::span<const shared::AuditRecord>> compare(const TechniqueContext& context);
+  Result<void> beginPiece(const TechniqueContext& context, double seconds);
+  Result<void> chooseGoal(const TechniqueContext& context);
 
   gpu::TailoredPass m_trace{"path_tracing", sizeof(shared::PathTracingPush)};
   gpu::Pass m_compare;
@@ -52,7 +59,7 @@ class Audit {
   vk::Buffer m_list, m_records, m_counters;
   uint32_t m_width = 0, m_height = 0, m_seed = 0;  ///< that m_list was made for
   uint32_t m_tilesX = 0, m_tilesY = 0;
-  uint32_t m_level = 0;           ///< of the samples that are being taken
+  Extent m_whole, m_goal;         ///< what has been taken, and what is being taken
   Piece m_piece;
   uint64_t m_paths = 0;
   WorkRate m_rate{2e5};           ///< paths; as of the path tracer

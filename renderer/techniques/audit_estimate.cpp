@@ -16,14 +16,14 @@ using glm::dvec3;
 /// Half the width of a 95 % interval, in standard deviations.
 constexpr double kSigmas = 1.96;
 /// How far the denominators may be off, relative: the truth in them is known from few samples.
-constexpr double kDenominatorDoubt = 0.15;
+constexpr double kDenominatorDoubt = 0.1;
 /// A pixel is shown this much brighter than the truth around it only by mistake, unless both halves agree with it.
 constexpr double kMostOverAround = 3.0;
 /// Squared differences under this many variances are noise.
 constexpr double kNoiseThatIsDoubted = 6.0;
 /// Of two ways to know the denominators, the share of the one that the pixel's own samples have a say in; and how far the error
-/// may be from there, in halves of the distance between both. Measured on eleven scenes.
-constexpr double kSampledShare = 0.4, kDenominatorsApart = 1.75;
+/// may be from there, in distances to what either way tells. Measured on twelve scenes.
+constexpr double kSampledShare = 1.0 / 3.0, kDenominatorsApart = 1.5;
 
 /// One pixel: what is shown, the truth as two halves know it, and the variance of one sample.
 struct Pixel {
@@ -170,17 +170,27 @@ double meanOf(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
 }
 
+/// Where between what two ways tell the error lies: at the mean of their logarithms, for with few samples the larger may be ten
+/// times the smaller. What noise has made negative has no logarithm, and stays.
+double shareOfSampled(double expected, double sampled) {
+  if (sampled <= expected) return kSampledShare;
+  if (expected <= 0.0) return 0.0;
+  const double middle = std::pow(expected, 1.0 - kSampledShare) * std::pow(sampled, kSampledShare);
+  return (middle - expected) / (sampled - expected);
+}
+
 /// Mean over the tiles with an interval that minds their skewness: where few tiles make the error, the mean is more likely
-/// too low than too high. [Johnson 1978] `apart` is how far the denominators let the mean be off.
-FilmError intervalOf(const std::vector<double>& tiles, double apart) {
+/// too low than too high. [Johnson 1978] The denominators let it be off by as much as `below` and `above` say.
+FilmError intervalOf(const std::vector<double>& tiles, double below, double above) {
   const double n = double(tiles.size()), mean = meanOf(tiles);
   double second = 0.0, third = 0.0;
   for (const double e : tiles) second += (e - mean) * (e - mean) / (n - 1.0), third += std::pow(e - mean, 3.0) / n;
   const double deviation = std::sqrt(second / n);
   const double skewness = second > 0.0 ? third / std::pow(second, 1.5) : 0.0;
   const double middle = mean + skewness * (1.0 + 2.0 * kSigmas * kSigmas) / (6.0 * std::sqrt(n)) * deviation;
-  const double half = std::hypot(kSigmas * deviation, kSigmas * kDenominatorDoubt * std::max(mean, 0.0), apart);
-  return {std::max(mean, 0.0), std::max(middle - half, 0.0), std::max(middle + half, 0.0)};
+  const double half = kSigmas * std::hypot(deviation, kDenominatorDoubt * std::max(mean, 0.0));
+  const double low = middle - std::hypot(half, below), high = middle + std::hypot(half, above);
+  return {std::max(mean, 0.0), std::max(low, 0.0), std::max(high, 0.0)};
 }
 
 }  // namespace
@@ -200,9 +210,33 @@ FilmError estimateFromAudit(std::span<const shared::AuditRecord> records, uint32
   }
   const std::vector<double> low = tileMeans(pixels, expected, tiles), high = tileMeans(pixels, sampled, tiles);
   if (low.size() < kLeastTiles || high.size() != low.size()) return {};
+  const double share = shareOfSampled(meanOf(low), meanOf(high));
   std::vector<double> middle(low.size());
-  for (size_t i = 0; i < middle.size(); ++i) middle[i] = std::lerp(low[i], high[i], kSampledShare);
-  return intervalOf(middle, kDenominatorsApart * 0.5 * std::abs(meanOf(high) - meanOf(low)));
+  for (size_t i = 0; i < middle.size(); ++i) middle[i] = std::lerp(low[i], high[i], share);
+  const double doubt = kDenominatorsApart * std::abs(meanOf(high) - meanOf(low));
+  return intervalOf(middle, share * doubt, (1.0 - share) * doubt);
+}
+
+bool noiseOutweighsChoice(std::span<const shared::AuditRecord> records, uint32_t tilesX, uint32_t tilesY) {
+  const std::vector<Pixel> pixels = readRecords(records, tilesX * tilesY);
+  if (pixels.empty()) return false;
+  const Expectation expectation(pixels, tilesX, tilesY);
+  const double least = expectation.leastSquare();
+  std::vector<dvec3> quotients, noises;
+  for (const Pixel& p : pixels) {
+    const dvec3 denominator = expectation.squaresOf(p).expected + least;
+    quotients.push_back((p.shown - p.even) * (p.shown - p.odd) / denominator);
+    noises.push_back(2.0 * p.variance / p.samples / denominator);  // variance of a half
+  }
+  const double largest = largestKept(quotients);
+  double count = 0.0, sum = 0.0, squares = 0.0, noise = 0.0;
+  for (size_t i = 0; i < pixels.size(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      const double q = quotients[i][c];
+      if (std::abs(q) > largest) continue;
+      count += 1.0, sum += q, squares += q * q, noise += noises[i][c] * noises[i][c];
+    }
+  return noise > 0.5 * (squares - sum * sum / count);
 }
 
 }  // namespace limn

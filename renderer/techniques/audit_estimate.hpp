@@ -11,6 +11,10 @@ namespace limn {
 /// noise of h and k does not. Infinity without records of at least kLeastTiles tiles. Any thread.
 FilmError estimateFromAudit(std::span<const shared::AuditRecord> records, uint32_t tilesX, uint32_t tilesY);
 
+/// Whether the noise of the samples makes more of the estimate's variance than the choice of the pixels does: then twice the
+/// samples tell more than twice the pixels. Any thread.
+bool noiseOutweighsChoice(std::span<const shared::AuditRecord> records, uint32_t tilesX, uint32_t tilesY);
+
 constexpr uint32_t kLeastTiles = 16;
 
 }  // namespace limn

@@ -64,6 +64,19 @@ TEST(Audit, WithoutItNothingIsSaidOfABiasedPicture) {
   EXPECT_FALSE(contains(status.ran, "audit pixels"));
 }
 
+TEST(Audit, TheFirstWholePictureIsJudgedBeforeItsPassEnds) {
+  SessionConfig config = audited(0.5);
+  config.quantumSeconds = 1e-4;  // a pass takes many
+  TestSession session(plainScene(), config);
+  Status status = session.status();
+  while (status.steps == 0 && std::isinf(status.errorHigh)) {
+    session.step();
+    status = session.status();
+  }
+  EXPECT_EQ(status.steps, 0u);
+  EXPECT_TRUE(std::isfinite(status.estimatedError));
+}
+
 TEST(Audit, UnbiasedTechniquesHaveNone) {
   TestSession session(plainScene(), pathTracing(32, 32, 2, 8));
   session.run(8);

@@ -115,6 +115,13 @@ TEST(AuditEstimate, IsUnknownWithoutEnoughOfThePicture) {
   EXPECT_TRUE(std::isinf(error.high));
 }
 
+TEST(AuditEstimate, GoodPicturesNeedSamplesAndBadOnesNeedPixels) {
+  const Made good{1.02, 0.0, 2.0}, bad{1.0, 0.8, 0.3};
+  EXPECT_TRUE(noiseOutweighsChoice(good.records(2, 1), kSide, kSide));
+  EXPECT_FALSE(noiseOutweighsChoice(bad.records(2, 1), kSide, kSide));
+  EXPECT_FALSE(noiseOutweighsChoice({}, kSide, kSide));
+}
+
 TEST(AuditEstimate, EveryBiasedTechniqueAnnouncesItsShare) {
   for (const TechniqueInfo& info : techniqueInfos()) {
     const auto of = [](const ParameterInfo& p) { return p.name == "auditShare"; };
