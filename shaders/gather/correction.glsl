@@ -22,7 +22,7 @@ const float kBesideShare = 0.25;
 const float kMostQuotient = 12.0;
 
 float brightestAround(uint i) {
-  ivec2 t = ivec2(i % push.microSize, i / push.microSize);
+  ivec2 t = texelPlace(i, push.microSize);
   float most = 0.0;
   for (int n = 0; n < 9; ++n) {
     ivec2 other = clamp(t + ivec2(n % 3 - 1, n / 3 - 1), ivec2(0), ivec2(push.microSize) - 1);
@@ -93,7 +93,7 @@ IndirectTexel correction(Site s, uint key) {
     Sampler sampler_ = makeSampler(key, ray, push.seed);
     vec2 choice = next2D(sampler_), place = next2D(sampler_);
     uint i = texelAt((float(ray) + choice.x) / float(push.correctionRays) * total);
-    vec3 q = octahedronFromMicro((vec2(i % push.microSize, i / push.microSize) + place) / float(push.microSize));
+    vec3 q = octahedronFromMicro((vec2(texelPlace(i, push.microSize)) + place) / float(push.microSize));
     vec3 dirW = toWorldOf(s, normalize(q));
     bool known;
     vec3 truth = radianceAlong(s, dirW, sampler_.key ^ ray, known);

@@ -54,6 +54,7 @@ layout(push_constant, scalar) uniform Push { PointProjectionPush push; };
 shared uint micro[kMostTexels];             // nearest: squared distance in the high bits, then the projection
 shared uint projected[kMostProjections];    // 2 * point + side of each projection; cluster of each sample before that
 shared float sumOfLanes[kMostGroup];
+shared uint holes;                          // empty texels of the micro-buffer
 #ifdef LIMN_GATHER_CORRECT
 shared float factorsOfLanes[kMostGroup];
 #endif
@@ -85,7 +86,7 @@ void splat(View v, float area, uint key) {
 
 uint facing(uint point, View v) { return 2u * point + (v.sinkCosine < 0.0 ? 1u : 0u); }
 
-uint wrap(uint slot) { return slot >= push.clusterUsed ? slot % push.clusterUsed : slot; }
+uint wrap(uint slot) { return remainderOf(slot, push.clusterUsed); }
 
 float pointArea() { return push.areaPerPoint * (float(push.clusterSize) / float(push.clusterUsed)); }
 
@@ -98,7 +99,7 @@ void explore(Site s, uint key) {
     clusterRun[k] = bits;
     float total = 0.0;
     for (uint j = 0u; j < kExplored; ++j) {
-      uint point = k * push.clusterSize + wrap(bits % push.clusterUsed + j);
+      uint point = k * push.clusterSize + wrap(slotOf(bits, push.clusterUsed) + j);
       View v = look(s, point);
       float solidAngle = diskSolidAngle(v, area) / v.d2;  // the two lengths in it are taken out
       float value = v.local.z * s.albedo;
@@ -116,9 +117,8 @@ void explore(Site s, uint key) {
   sumOfLanes[lane] = sum;
 }
 
-// Writes the cluster of each sample to projected[]: the first of each run is marked, then every invocation fills a
-// stretch.
-void findClusters(uint base, uint samples) {
+// Marks the first sample of each run with its cluster.
+void markRuns(uint base, uint samples) {
   uint lane = gl_LocalInvocationIndex;
   for (uint i = lane; i < samples; i += kGroup) projected[base + i] = 0u;
   barrier();
@@ -127,17 +127,16 @@ void findClusters(uint base, uint samples) {
     if (end > firstSample(k)) projected[base + firstSample(k)] = k;
   }
   barrier();
-  uint stretch = (samples + kGroup - 1u) / kGroup, first = min(lane * stretch, samples);
+}
+
+// The cluster whose run holds `sample_`.
+uint clusterOf(uint sample_) {
   uint cluster = 0u;
   for (uint step = kMostClusters / 2u; step > 0u; step >>= 1) {
     uint next = cluster + step;
-    cluster = next < push.clusterCount && firstSample(min(next, kMostClusters - 1u)) <= first ? next : cluster;
+    cluster = next < push.clusterCount && firstSample(min(next, kMostClusters - 1u)) <= sample_ ? next : cluster;
   }
-  for (uint i = first; i < min(first + stretch, samples); ++i) {
-    cluster = max(cluster, projected[base + i]);
-    projected[base + i] = cluster;
-  }
-  barrier();
+  return cluster;
 }
 
 // What each projected point of a cluster stands for [m²]: those that explored and those drawn share it. [IPP eq. 3] A point of
@@ -147,23 +146,34 @@ float sharedArea(uint cluster) {
   return kDiskShare * pointArea() * float(push.clusterUsed) / share;
 }
 
-void projectPoint(Site s, uint cluster, uint slot, uint number) {
-  uint point = cluster * push.clusterSize + slot;
+void projectPoint(Site s, uint point, float area, uint number) {
   View v = look(s, point);
   projected[number] = facing(point, v);
-  splat(v, sharedArea(cluster), depthKey(v.d2) | number);
+  splat(v, area, depthKey(v.d2) | number);
 }
 
 // A run of points of every cluster, from the two that explored it on: their order is progressive, so that a run is spread
-// over the cluster.
+// over the cluster. Every invocation projects a stretch of the samples, and looks a cluster up where its run begins.
 void exploit(Site s, uint key, uint base, uint samples) {
-  for (uint k = gl_LocalInvocationIndex; k < push.clusterCount; k += kGroup)
-    for (uint j = 0u; j < kExplored; ++j) projectPoint(s, k, wrap((clusterRun[k] >> kSampleBits) + j), kExplored * k + j);
-  for (uint i = gl_LocalInvocationIndex; i < samples; i += kGroup) {
-    uint number = base + i, cluster = projected[number], run = clusterRun[cluster];
+  for (uint k = gl_LocalInvocationIndex; k < push.clusterCount; k += kGroup) {
+    uint slot = clusterRun[k] >> kSampleBits;
+    float area = sharedArea(k);
+    for (uint j = 0u; j < kExplored; ++j)
+      projectPoint(s, k * push.clusterSize + wrap(slot + j), area, kExplored * k + j);
+  }
+  uint stretch = (samples + kGroup - 1u) / kGroup, first = min(gl_LocalInvocationIndex * stretch, samples);
+  uint cluster = clusterOf(first), run = clusterRun[cluster];
+  float area = sharedArea(cluster);
+  for (uint i = first; i < min(first + stretch, samples); ++i) {
+    uint begins = projected[base + i];
+    if (begins > cluster) {
+      cluster = begins;
+      run = clusterRun[cluster];
+      area = sharedArea(cluster);
+    }
     uint slot = wrap((run >> kSampleBits) + kExplored + (i - (run & kSampleMask)));
-    if (kSelection == kAtRandom) slot = hash(key + i * 0x85ebca6bu) % push.clusterUsed;
-    projectPoint(s, cluster, slot, number);
+    if (kSelection == kAtRandom) slot = slotOf(hash(key + i * 0x85ebca6bu), push.clusterUsed);
+    projectPoint(s, cluster * push.clusterSize + slot, area, base + i);
   }
 }
 
@@ -191,9 +201,9 @@ uint wordAt(ivec2 texel) {
   return inside ? micro[uint(texel.y) * push.microSize + uint(texel.x)] : kEmpty;
 }
 
-// What is put into texel `i`: an empty one that is covered on most sides takes the nearest of what is there.
+// What is put into texel `i`: where it is empty and what is around covers most sides, the nearest of that.
 uint closed(uint i) {
-  ivec2 t = ivec2(i % push.microSize, i / push.microSize);
+  ivec2 t = texelPlace(i, push.microSize);
   bool atEdge = any(equal(t, ivec2(0))) || any(equal(t, ivec2(push.microSize - 1u)));
   uint covered = 0u, nearest = kEmpty;
   for (int n = 0; n < 9; ++n) {
@@ -205,13 +215,19 @@ uint closed(uint i) {
   return hole ? nearest : micro[i];
 }
 
-// Holes between the splats of a surface close, from their rims inwards.
+// Holes between the splats of a surface close, from their rims inwards. There are few: they are listed in clusterRun[], and
+// what goes into them waits in importance[] until all have been looked at. Both have served.
 void closeHoles() {
-  uint texels = push.microSize * push.microSize;
+  uint lane = gl_LocalInvocationIndex;
+  if (lane == 0u) holes = 0u;
+  barrier();
+  for (uint i = lane; i < push.microSize * push.microSize; i += kGroup)
+    if (micro[i] == kEmpty) clusterRun[atomicAdd(holes, 1u)] = i;
+  barrier();
   for (uint turn = 0u; turn < kHoleTurns; ++turn) {
-    for (uint i = gl_LocalInvocationIndex; i < texels; i += kGroup) clusterRun[i] = closed(i);
+    for (uint h = lane; h < holes; h += kGroup) importance[h] = uintBitsToFloat(closed(clusterRun[h]));
     barrier();
-    for (uint i = gl_LocalInvocationIndex; i < texels; i += kGroup) micro[i] = clusterRun[i];
+    for (uint h = lane; h < holes; h += kGroup) micro[clusterRun[h]] = floatBitsToUint(importance[h]);
     barrier();
   }
 }
@@ -341,7 +357,7 @@ void project(Site s) {
   if (!(sum > 0.0)) return;  // nothing is above the site
   if (gl_LocalInvocationIndex == 0u) allocate(samples, push.clusterCount, push.clusterUsed, sum);
   barrier();
-  findClusters(base, samples);
+  markRuns(base, samples);
   exploit(s, key, base, samples);
   barrier();
   if (kSplatSide == 0u) closeHoles();

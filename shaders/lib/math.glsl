@@ -10,6 +10,13 @@ float luminance(vec3 linear) { return dot(linear, vec3(0.2126, 0.7152, 0.0722));
 float maxComponent(vec3 v) { return max(v.x, max(v.y, v.z)); }
 float square(float x) { return x * x; }
 
+// a mod n for a below 2^22, as floats: integers are divided lane by lane on a processor.
+uint remainderOf(uint a, uint n) {
+  int rest = int(a) - int(float(a) / float(n)) * int(n);  // the quotient may be one off
+  rest += rest < 0 ? int(n) : 0;
+  return uint(rest >= int(n) ? rest - int(n) : rest);
+}
+
 bool isFinite(vec3 v) { return !(any(isnan(v)) || any(isinf(v))); }
 
 // Orthonormal tangents of a unit normal, without a branch on its direction (Duff et al. 2017).

@@ -25,8 +25,14 @@ float microSolidAngle(vec3 q) {
   return 2.0 * inverse * inverse * inverse;
 }
 
+// Column and row of texel `i` of a map up to 2,048 texels wide. Integers are divided lane by lane on a processor, floats are not.
+ivec2 texelPlace(uint i, uint size) {
+  int row = int((float(i) + 0.5) / float(size));
+  return ivec2(int(i) - row * int(size), row);
+}
+
 // The octahedron's point at the middle of texel `i` of a map `size` texels wide. Its solid angle is microSolidAngle() / size²:
 // over a map of 8x8 these sum up to 2 pi within 1e-4, and times the cosine to pi within 4e-4.
-vec3 microTexel(uint i, uint size) { return octahedronFromMicro((vec2(i % size, i / size) + 0.5) / float(size)); }
+vec3 microTexel(uint i, uint size) { return octahedronFromMicro((vec2(texelPlace(i, size)) + 0.5) / float(size)); }
 
 #endif
