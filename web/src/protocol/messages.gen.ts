@@ -542,7 +542,7 @@ export interface FrameHeader {
   frameId: number;  /** rises by at least 1 a frame on a connection; 0 for files */
   ackSeq: number;  /** newest seq of this client's edits that the picture shows, 0 for none; for files the seq of the save */
   sceneRevision: number;  /** of the picture */
-  viewRevision: number;  /** of the picture (camera, size, resolve) */
+  viewRevision: number;  /** of the picture (camera, size) */
   x: number;  /** left edge of the rectangle in the full picture [pixel] */
   y: number;  /** top edge [pixel] */
   width: number;  /** of the rectangle in the full picture [pixel] */
