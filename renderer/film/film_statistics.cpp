@@ -23,8 +23,8 @@ Result<vk::Buffer> makeReadback(vk::Device& device, size_t bytes, const char* na
 /// Half the width of a 95 % interval, in standard deviations.
 constexpr double kSigmas = 1.96;
 /// How far the denominators may be off, relative, in standard deviations: they are themselves made from the film. Measured on
-/// made pictures whose noise goes from that of an open sky to one path in a hundred that finds the light.
-constexpr double kDenominatorDoubt = 0.15;
+/// twelve scenes.
+constexpr double kDenominatorDoubt = 0.12;
 
 /// The values that are left out of the mean: those in bins behind `lastBin`, and `ofLast` more that are as large as `value`.
 struct Trim {

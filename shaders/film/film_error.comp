@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/lib/film.glsl"
+#include "shaders/lib/math.glsl"
 
 layout(local_size_x = 16, local_size_y = 16) in;
 layout(binding = BINDING_OUTPUT, scalar) buffer Tiles { TileError tiles[]; };
@@ -43,15 +44,29 @@ bool squaredError(uint pixel, vec4 mean, out vec3 square) {
 
 // What two pixels of one piece of surface may differ by: albedo, depth by a share, normal by length.
 const float kLikeAlbedo = 0.02, kLikeDepth = 0.03, kLikeNormal = 0.1;
+// And two pixels of surfaces in about the same indirect light: albedo by a factor.
+const float kNearAlbedo = 4.0, kNearDepth = 0.1, kNearNormal = 0.5;
 // Direct light that a pixel around has too is no single bright path; less than this share of it is not expected. Measured.
 const float kLeastOfDirect = 0.5;
 
+bool isClose(uint a, uint b, float depth, float normal) {
+  float depthA = filmAlbedo[a].w, depthB = filmAlbedo[b].w;
+  return abs(depthA - depthB) < depth * depthA && distance(filmNormal[a], filmNormal[b]) < normal;
+}
+
+vec3 albedoAt(uint pixel) { return filmAlbedo[pixel].rgb; }
+vec3 directAt(uint pixel) { return filmDirect[pixel].rgb; }
+vec3 indirectAt(uint pixel) { return max(filmMean[pixel].rgb - filmDirect[pixel].rgb, vec3(0.0)); }
+
 // Whether both pixels show one piece of surface: lights and edges are no noise.
 bool alike(uint a, uint b) {
-  vec4 albedoA = filmAlbedo[a], albedoB = filmAlbedo[b], normalA = filmNormal[a], normalB = filmNormal[b];
-  vec3 colour = abs(albedoA.rgb - albedoB.rgb);
-  return max(colour.r, max(colour.g, colour.b)) < kLikeAlbedo && abs(albedoA.w - albedoB.w) < kLikeDepth * albedoA.w &&
-         distance(normalA, normalB) < kLikeNormal;
+  return maxComponent(abs(albedoAt(a) - albedoAt(b))) < kLikeAlbedo && isClose(a, b, kLikeDepth, kLikeNormal);
+}
+
+// Whether indirect light at one tells that at the other: `tint` is its colour over the other's.
+bool alikeButForColour(uint a, uint b, out vec3 tint) {
+  tint = (albedoAt(a) + kLikeAlbedo) / (albedoAt(b) + kLikeAlbedo);
+  return maxComponent(max(tint, 1.0 / tint)) < kNearAlbedo && isClose(a, b, kNearDepth, kNearNormal);
 }
 
 // What the pixels around show, without the one in the middle.
@@ -60,14 +75,13 @@ struct Around {
   vec3 largestDirect;     // of all of them
 };
 
-vec3 directAt(uint pixel) { return filmDirect[pixel].rgb; }
-vec3 indirectAt(uint pixel) { return max(filmMean[pixel].rgb - filmDirect[pixel].rgb, vec3(0.0)); }
-
-// A pixel that is alone is all there is around it.
+// Where none is alike, as on textures and bumps, indirect light of others counts in the colour of the one in the middle, whose
+// direct light is what it is: it may be a lamp. A pixel that is alone is all there is around it.
 Around lookAround(uvec2 middle, uint pixel) {
   const int kReach = 1;
   Around a = Around(vec3(0.0), vec3(0.0), vec3(0.0));
-  float count = 0.0;
+  vec3 tinted = vec3(0.0), tint;
+  float count = 0.0, tintedCount = 0.0;
   for (int y = -kReach; y <= kReach; ++y)
     for (int x = -kReach; x <= kReach; ++x) {
       ivec2 p = ivec2(middle) + ivec2(x, y);
@@ -75,15 +89,14 @@ Around lookAround(uvec2 middle, uint pixel) {
       uint other = uint(p.y) * push.width + uint(p.x);
       if (filmMean[other].w == 0.0) continue;
       a.largestDirect = max(a.largestDirect, directAt(other));
+      if (alikeButForColour(pixel, other, tint)) tinted += tint * indirectAt(other), tintedCount += 1.0;
       if (!alike(pixel, other)) continue;
       a.direct += directAt(other);
       a.indirect += indirectAt(other);
       count += 1.0;
     }
-  if (count == 0.0) return Around(directAt(pixel), indirectAt(pixel), directAt(pixel));
-  a.direct /= count;
-  a.indirect /= count;
-  return a;
+  if (count > 0.0) return Around(a.direct / count, a.indirect / count, a.largestDirect);
+  return Around(directAt(pixel), tintedCount > 0.0 ? tinted / tintedCount : indirectAt(pixel), directAt(pixel));
 }
 
 // By as much as noise may explain the difference, what is around is believed. [Efron, Morris 1973]
