@@ -104,6 +104,10 @@ Result<ErrorMetrics> compareImages(const RadianceView& picture, const Reference&
   return metrics;
 }
 
+RadianceImage imageOf(const RadianceView& view) {
+  return {view.width, view.height, {view.values.begin(), view.values.end()}};
+}
+
 RadianceImage averageBlocks(const RadianceView& image, uint32_t side) {
   RadianceImage low{(image.width + side - 1) / side, (image.height + side - 1) / side, {}};
   low.values.reserve(size_t(low.width) * low.height * 3);

@@ -50,12 +50,15 @@ std::vector<double> relativeDenominators(const Reference& reference);
 /// Mean without the `discardedShare` of values that are largest in magnitude; at least one value stays.
 double trimmedMean(std::vector<double> values, double discardedShare);
 
-/// An image whose pixels are the means of side x side blocks; blocks at the right and bottom may be smaller.
+/// A picture that holds its values.
 struct RadianceImage {
   uint32_t width = 0, height = 0;
   std::vector<float> values;
   RadianceView view() const { return {width, height, values}; }
 };
+/// A copy of what is looked at.
+RadianceImage imageOf(const RadianceView& view);
+/// An image whose pixels are the means of side x side blocks; blocks at the right and bottom may be smaller.
 RadianceImage averageBlocks(const RadianceView& image, uint32_t side);
 /// compareImages() after averaging blocks of 16x16: noise is nearly gone, bias stays.
 Result<ErrorMetrics> compareLow(const RadianceView& picture, const Reference& reference);

@@ -18,16 +18,11 @@ struct SeedRun {
 };
 
 Result<RunningMean> runningMean(Session& session) {
-  const Result<FilmImage> film = session.readFilm();
-  if (!film) return film.error();
-  const Result<RadianceView> radiance = radianceOf(*film, "film");
-  if (!radiance) return radiance.error();
-  const FilmLayer* samples = film->find("samples");
-  if (!samples) return Error{"bad-image", "the film has no sample counts", ""};
-  const auto [least, most] = std::minmax_element(samples->data.begin(), samples->data.end());
+  Result<SampledPicture> shown = readPicture(session);
+  if (!shown) return shown.error();
+  const auto [least, most] = std::minmax_element(shown->samples.begin(), shown->samples.end());
   if (*least != *most) return Error{"bad-image", "pixels have different numbers of samples", ""};
-  return RunningMean{uint64_t(*least),
-                     {radiance->width, radiance->height, {radiance->values.begin(), radiance->values.end()}}};
+  return RunningMean{uint64_t(*least), std::move(shown->picture)};
 }
 
 Result<SeedRun> runSeed(vk::Device& device, const LoadedScene& loaded, const SessionConfig& config) {

@@ -11,6 +11,8 @@
 namespace limn::bench {
 namespace {
 
+constexpr size_t kMostLinesBelow = 6;  // named below a plot; more are named beside it
+
 Plot::Line errorLine(const Curve& curve, const std::string& title) {
   Plot::Line line{title, {}};
   for (const CurvePoint& point : curve.points) line.points.push_back({point.seconds, point.relMse});
@@ -129,12 +131,16 @@ std::string gnuplotScript(const Plot& plot, const std::string& directory) {
                " pointtype 7 pointsize 0.5 title " + quoted(plot.lines[i].title);
   }
   if (plot.dots) drawing += ", x with lines linecolor rgb 'gray' title 'estimate = truth'";
-  script += "set logscale xy\nset format xy '%g'\nset grid\nset key outside right noenhanced\n";
+  const bool few = plot.lines.size() <= kMostLinesBelow;
+  script += "set logscale xy\nset format xy '%g'\nset grid\nset key outside noenhanced ";
+  script += few ? "bottom center horizontal\n" : "right\n";
   script += "set title " + quoted(plot.title) + " noenhanced\n";
   script += "set xlabel " + quoted(plot.xLabel) + "\nset ylabel " + quoted(plot.yLabel) + "\n";
   const std::string file = (std::filesystem::path(directory) / plot.name).string();
-  script += "set terminal svg size 860,520 font 'sans,13' background rgb 'white'\nset output " + quoted(file + ".svg");
-  script += "\nplot " + drawing + "\nset terminal png size 860,520\nset output " + quoted(file + ".png");
+  const std::string size = few ? "860,520" : "1160," + std::to_string(120 + 18 * plot.lines.size());
+  script += "set terminal svg size " + size + " font 'sans,13' background rgb 'white'\nset output ";
+  script += quoted(file + ".svg") + "\nplot " + drawing + "\nset terminal png size " + size + "\nset output ";
+  script += quoted(file + ".png");
   script += "\nreplot\nunset output\nreset\n";
   return script;
 }

@@ -56,14 +56,10 @@ Result<HalfSamples> takeSamples(vk::Device& device, const LoadedScene& loaded, c
     half.passes = passes > 0 ? passes : half.passes + 1;
     if (Result<void> done = session.runSteps(half.passes); !done) return done.error();
   } while (passes == 0 && nowSeconds() < end);
-  const Result<FilmImage> film = session.readFilm();
-  if (!film) return film.error();
-  const Result<RadianceView> radiance = radianceOf(*film, "film");
-  if (!radiance) return radiance.error();
-  const FilmLayer* samples = film->find("samples");
-  if (!samples) return Error{"bad-image", "the film has no sample counts", ""};
-  half.samples = uint64_t(*std::min_element(samples->data.begin(), samples->data.end()));
-  half.picture = {radiance->width, radiance->height, {radiance->values.begin(), radiance->values.end()}};
+  Result<SampledPicture> shown = readPicture(session);
+  if (!shown) return shown.error();
+  half.samples = uint64_t(*std::min_element(shown->samples.begin(), shown->samples.end()));
+  half.picture = std::move(shown->picture);
   return half;
 }
 
@@ -127,7 +123,7 @@ Result<void> ReferencePictures::load() {
     const bool readable = parseInteger(metadataOf(*image, "limn:referenceSamples"), counts[i]) &&
                           parseReal(metadataOf(*image, "limn:referenceSeconds"), seconds[i]);
     if (!readable || metadataOf(*image, kKey) != m_key) return {};
-    m_halves[i] = {radiance->width, radiance->height, {radiance->values.begin(), radiance->values.end()}};
+    m_halves[i] = imageOf(*radiance);
   }
   if (counts[0] != counts[1]) return {};  // written by two programs at once; made anew
   m_samples = 2 * counts[0];

@@ -21,10 +21,8 @@ Result<void> advance(Session& session, const Budget& budget, double seconds) {
 Result<Checkpoint> takeCheckpoint(Session& session, double seconds) {
   const Result<std::shared_ptr<const Frame>> frame = session.resolveFrame();
   if (!frame) return frame.error();
-  const Result<FilmImage> film = session.readFilm();
-  if (!film) return film.error();
-  const Result<RadianceView> radiance = radianceOf(*film, "film");
-  if (!radiance) return radiance.error();
+  Result<SampledPicture> shown = readPicture(session);
+  if (!shown) return shown.error();
   const Result<uint64_t> hash = session.filmHash();
   if (!hash) return hash.error();
 
@@ -38,11 +36,9 @@ Result<Checkpoint> takeCheckpoint(Session& session, double seconds) {
   checkpoint.high = info.errorHigh;
   checkpoint.converged = info.phase == Phase::converged;
   checkpoint.filmHash = *hash;
-  checkpoint.picture = {radiance->width, radiance->height, {radiance->values.begin(), radiance->values.end()}};
-  if (const FilmLayer* samples = film->find("samples")) {
-    checkpoint.samples = harmonicMean(samples->data);
-    fillMissing(checkpoint.picture, samples->data);
-  }
+  checkpoint.samples = harmonicMean(shown->samples);
+  checkpoint.picture = std::move(shown->picture);
+  fillMissing(checkpoint.picture, shown->samples);
   return checkpoint;
 }
 
@@ -56,6 +52,16 @@ Result<std::unique_ptr<BenchSession>> BenchSession::create(vk::Device& device, c
   if (!session) return session.error();
   made->m_session = session.take();
   return made;
+}
+
+Result<SampledPicture> readPicture(Session& session) {
+  const Result<FilmImage> film = session.readFilm();
+  if (!film) return film.error();
+  const Result<RadianceView> radiance = radianceOf(*film, "film");
+  if (!radiance) return radiance.error();
+  const FilmLayer* samples = film->find("samples");
+  if (!samples) return Error{"bad-image", "the film has no sample counts", ""};
+  return SampledPicture{imageOf(*radiance), samples->data};
 }
 
 Result<Run> measureRun(vk::Device& device, const LoadedScene& loaded, const SessionConfig& config,

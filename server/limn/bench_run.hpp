@@ -23,6 +23,14 @@ class BenchSession {
   std::unique_ptr<Session> m_session;
 };
 
+/// What a session's film shows, and from how many samples of each pixel.
+struct SampledPicture {
+  RadianceImage picture;
+  std::vector<float> samples;          ///< one number a pixel
+};
+/// Errors: those of the session; "bad-image" where a layer is absent.
+Result<SampledPicture> readPicture(Session& session);
+
 /// The picture of a run at one budget, and what the film said of it.
 struct Checkpoint {
   double seconds = 0.0;                ///< of rendering, as it really was

@@ -31,8 +31,7 @@ Result<std::vector<PeerPoint>> loadPeers(const std::string& scene, const std::ve
     if (!image) return image.error();
     const Result<RadianceView> radiance = radianceOf(*image, entry.file);
     if (!radiance) return radiance.error();
-    points.push_back({entry.renderer, entry.seconds,
-                      {radiance->width, radiance->height, {radiance->values.begin(), radiance->values.end()}}});
+    points.push_back({entry.renderer, entry.seconds, imageOf(*radiance)});
   }
   return points;
 }

@@ -55,6 +55,20 @@ TEST(Formula, FramesAreOrthonormal) {
   }
 }
 
+TEST(Formula, RemaindersAreExactBelow2ToThe22) {
+  const auto word = [](uint32_t w) { return std::bit_cast<float>(w); };
+  std::vector<glm::uvec2> pairs;
+  for (const uint32_t n : {1u, 2u, 3u, 7u, 32u, 511u, 512u, 513u, 16383u, 16384u})
+    for (const uint32_t whole : {0u, 1u, 2u, 100u, ((1u << 22) - 1) / n})
+      for (const uint32_t a : {whole * n, whole * n + n - 1, whole > 0 ? whole * n - 1 : 0u})
+        if (a < 1u << 22) pairs.push_back({a, n});
+  std::vector<glm::vec4> values;
+  for (const glm::uvec2& p : pairs) values.push_back({word(p.x), word(p.y), 0, 0});
+  const auto rests = evaluate(shared::kFormulaRemainder, values);
+  for (size_t i = 0; i < pairs.size(); ++i)
+    EXPECT_EQ(uint32_t(rests[i].x), pairs[i].x % pairs[i].y) << pairs[i].x << " mod " << pairs[i].y;
+}
+
 std::vector<glm::vec4> colours() {
   std::vector<glm::vec4> list{
       {0, 0, 0, 0},          {1, 1, 1, 0},          {0.18f, 0.18f, 0.18f, 0}, {1, 0, 0, 0},

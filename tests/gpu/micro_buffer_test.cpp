@@ -19,7 +19,7 @@ struct MicroTexel {
 };
 
 TEST(MicroBuffer, TexelsFillTheHemisphereAndAreFoundAgain) {
-  for (const uint32_t size : {8u, 16u, 24u, 32u}) {
+  for (uint32_t size = 8; size <= 32; ++size) {
     const auto texels = runKernel<MicroTexel>(micro_bufferSpirv, {}, size, size * size, groupsFor(size * size));
     double solidAngle = 0.0, cosine = 0.0;
     for (uint32_t i = 0; i < texels.size(); ++i) {
@@ -31,6 +31,7 @@ TEST(MicroBuffer, TexelsFillTheHemisphereAndAreFoundAgain) {
       solidAngle += t.solidAngle;
       cosine += t.solidAngle * t.dir.z;
     }
+    if (size % 2 == 1) continue;  // the middle row of texels lies across the octahedron's edges
     EXPECT_NEAR(solidAngle, 2 * kPi, 1e-4 * 2 * kPi) << size;
     EXPECT_NEAR(cosine, kPi, 4e-4 * kPi) << size;
   }

@@ -21,5 +21,7 @@ void main() {
     vec3 wrong = abs(vec3(dot(t, b), dot(t, v.xyz), dot(b, v.xyz)));
     result[i] = vec4(max(maxComponent(wrong), maxComponent(abs(cross(t, b) - v.xyz))), length(t), length(b), 0.0);
   } else if (push.formula == kFormulaSrgb) result[i] = vec4(linearToSrgb(v.xyz), 0.0);
+  else if (push.formula == kFormulaRemainder)
+    result[i] = vec4(float(remainderOf(floatBitsToUint(v.x), floatBitsToUint(v.y))));
   else result[i] = vec4(toneMap(v.xyz, push.formula - kFormulaToneMap), 0.0);
 }
