@@ -1,5 +1,6 @@
 #include "server/limn/bench_plots.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -137,7 +138,7 @@ std::string gnuplotScript(const Plot& plot, const std::string& directory) {
   script += "set title " + quoted(plot.title) + " noenhanced\n";
   script += "set xlabel " + quoted(plot.xLabel) + "\nset ylabel " + quoted(plot.yLabel) + "\n";
   const std::string file = (std::filesystem::path(directory) / plot.name).string();
-  const std::string size = few ? "860,520" : "1160," + std::to_string(120 + 18 * plot.lines.size());
+  const std::string size = few ? "860,520" : "1160," + std::to_string(std::max<size_t>(520, 120 + 18 * plot.lines.size()));
   script += "set terminal svg size " + size + " font 'sans,13' background rgb 'white'\nset output ";
   script += quoted(file + ".svg") + "\nplot " + drawing + "\nset terminal png size " + size + "\nset output ";
   script += quoted(file + ".png");
