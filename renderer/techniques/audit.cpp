@@ -159,6 +159,7 @@ Result<void> Audit::chooseGoal(const TechniqueContext& context) {
   return {};
 }
 
+// A piece takes its entries to the goal's samples, from those that the whole extent has or from none.
 Result<void> Audit::beginPiece(const TechniqueContext& context, double seconds) {
   uint32_t first = m_piece.first + m_piece.count;
   if (first == entriesOf(m_goal)) {

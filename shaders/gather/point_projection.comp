@@ -215,19 +215,20 @@ uint closed(uint i) {
   return hole ? nearest : micro[i];
 }
 
-// Holes between the splats of a surface close, from their rims inwards. There are few: they are listed in clusterRun[], and
-// what goes into them waits in importance[] until all have been looked at. Both have served.
+// Holes between the splats of a surface close, from their rims inwards. There are few: they are listed in importance[], and
+// what goes into them waits in clusterRun[] until all have been looked at. Both have served; words of the micro-buffer may be
+// no numbers, and only integers keep all their bits.
 void closeHoles() {
   uint lane = gl_LocalInvocationIndex;
   if (lane == 0u) holes = 0u;
   barrier();
   for (uint i = lane; i < push.microSize * push.microSize; i += kGroup)
-    if (micro[i] == kEmpty) clusterRun[atomicAdd(holes, 1u)] = i;
+    if (micro[i] == kEmpty) importance[atomicAdd(holes, 1u)] = float(i);
   barrier();
   for (uint turn = 0u; turn < kHoleTurns; ++turn) {
-    for (uint h = lane; h < holes; h += kGroup) importance[h] = uintBitsToFloat(closed(clusterRun[h]));
+    for (uint h = lane; h < holes; h += kGroup) clusterRun[h] = closed(uint(importance[h]));
     barrier();
-    for (uint h = lane; h < holes; h += kGroup) micro[clusterRun[h]] = floatBitsToUint(importance[h]);
+    for (uint h = lane; h < holes; h += kGroup) micro[uint(importance[h])] = clusterRun[h];
     barrier();
   }
 }
