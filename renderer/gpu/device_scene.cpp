@@ -49,7 +49,8 @@ bool DeviceScene::anyAlpha() const {
 }
 
 uint64_t DeviceScene::hostBytes() const {
-  uint64_t bytes = m_lightTable.lights.size() * sizeof(shared::LightData) + m_lightTable.lightOfTriangle.size() * 4;
+  uint64_t bytes = m_lightTable.lights.size() * sizeof(shared::LightData) + m_lightTable.lightOfTriangle.size() * 4 +
+                   m_lightTable.tree.size() * sizeof(shared::LightNode);
   for (const GeometryBlock& block : m_blocks)
     bytes += sizeof block + (block.corners.size() + block.positions.size() + block.triangles.size()) * sizeof(glm::vec3);
   return bytes;
@@ -181,7 +182,10 @@ Result<void> DeviceScene::writeLights(const Scene& scene) {
   m_info.environmentRotation = scene.environment.rotation;
   m_info.sceneRadius = float(m_radius);
   m_info.triangleCount = uint32_t(m_triangleCount);
+  m_info.lightTreeShare = m_lightTable.treeShare;
   if (auto r = replace(m_device, m_lights, describe(kLights, "lights"), m_lightTable.lights); !r) return r;
+  const auto ofTree = describe(kLights, "lightTree", VK_FORMAT_R32G32B32A32_UINT);
+  if (auto r = replace(m_device, m_lightTree, ofTree, m_lightTable.tree); !r) return r;
   const auto ofTriangles = describe(kLights, "triangleLights", VK_FORMAT_R32_UINT);
   if (auto r = replace(m_device, m_triangleLights, ofTriangles, m_lightTable.lightOfTriangle); !r) return r;
   return replace(m_device, m_sceneInfo, describe(kScene, "info"), std::vector<shared::SceneInfo>{m_info});
@@ -192,6 +196,7 @@ std::vector<vk::Binding> DeviceScene::bindings() const {
           vk::texel(BINDING_POSITIONS, m_positions),
           vk::texel(BINDING_VERTICES, m_vertices),
           vk::texel(BINDING_TRIANGLE_LIGHTS, m_triangleLights),
+          vk::texel(BINDING_LIGHT_TREE, m_lightTree),
           vk::storage(BINDING_MATERIALS, m_materials),
           vk::storage(BINDING_LIGHTS, m_lights),
           vk::storage(BINDING_IMAGES, m_images),

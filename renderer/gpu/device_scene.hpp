@@ -58,8 +58,8 @@ class DeviceScene {
   std::vector<uint8_t> m_blockAlpha;
   LightTable m_lightTable;
   shared::SceneInfo m_info{};
-  vk::Buffer m_triangles, m_positions, m_vertices, m_triangleLights, m_materials, m_textureSlots, m_lights, m_images, m_texels,
-      m_environment, m_environmentTable, m_sceneInfo;
+  vk::Buffer m_triangles, m_positions, m_vertices, m_triangleLights, m_materials, m_textureSlots, m_lights, m_lightTree,
+      m_images, m_texels, m_environment, m_environmentTable, m_sceneInfo;
 };
 
 }  // namespace limn::gpu

@@ -3,9 +3,13 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 #include "renderer/base/luminance.hpp"
 #include "renderer/gpu/alias_table.hpp"
+#include "renderer/gpu/light_tree.hpp"
+#include "renderer/scene/scene_needs.hpp"
 
 namespace limn::gpu {
 namespace {
@@ -48,10 +52,17 @@ glm::vec3 meanRadiance(const Scene& scene) {
 struct Builder {
   LightTable table;
   std::vector<double> powers;
+  std::vector<LightBounds> placed;  ///< those at a place
 
-  void add(const shared::LightData& light, double power) {
+  void add(shared::LightData light, double power) {
+    light.node = shared::kNoIndex;
     table.lights.push_back(light);
     powers.push_back(power);
+  }
+  void add(const shared::LightData& light, double power, LightBounds bounds) {
+    bounds.light = uint32_t(table.lights.size());
+    placed.push_back(bounds);
+    add(light, power);
   }
 };
 
@@ -69,13 +80,13 @@ void addPunctual(Builder& b, const Light& light, const glm::dmat4& world, const 
   switch (light.type) {
     case LightType::point:
       d.type = shared::kLightPoint;
-      return b.add(d, 4.0 * kPi * value);
+      return b.add(d, 4.0 * kPi * value, pointBounds(d.posR, value));
     case LightType::spot: {
       d.type = shared::kLightSpot;
       const float inner = std::cos(light.innerConeAngle), outer = std::cos(light.outerConeAngle);
       d.spotScale = 1.0f / std::max(0.001f, inner - outer);
       d.spotOffset = -outer * d.spotScale;
-      return b.add(d, 2.0 * kPi * (1.0 - double(outer)) * value);
+      return b.add(d, 2.0 * kPi * (1.0 - double(outer)) * value, spotBounds(d.posR, d.dirR, outer, value));
     }
     case LightType::directional:
       d.type = shared::kLightDirectional;
@@ -97,16 +108,29 @@ void addEmissiveBlock(Builder& b, const Scene& scene, const GeometryBlock& block
     emission *= glm::max(entry->second, glm::vec3(0.1f));
   }
   for (uint32_t t = 0; t < block.triangleCount(); ++t) {
-    const double area = triangleArea(&block.corners[size_t(t) * 3]);
-    const double power = 2.0 * kPi * area * luminance(emission);
+    const glm::vec3* corner = &block.corners[size_t(t) * 3];
+    const double area = triangleArea(corner), intensity = area * luminance(emission), power = 2.0 * kPi * intensity;
     if (!(power > 0.0)) continue;
     shared::LightData d{};
     d.type = shared::kLightTriangle;
     d.triangle = block.firstTriangle + t;
     d.area = float(area);
     b.table.lightOfTriangle[d.triangle] = uint32_t(b.table.lights.size());
-    b.add(d, power);
+    b.add(d, power, triangleBounds(corner, intensity));
   }
+}
+
+/// Moves the lights at a place from the alias table's care to a tree's.
+void plantTree(Builder& b) {
+  if (b.placed.size() <= kFewLights) return;
+  double placed = 0.0;
+  for (const LightBounds& bounds : b.placed) placed += std::exchange(b.powers[bounds.light], 0.0);
+  const double infinite = std::accumulate(b.powers.begin(), b.powers.end(), 0.0);
+  b.table.treeShare = float(placed / (placed + infinite));
+  b.table.tree = buildLightTree(b.placed);
+  for (uint32_t node = 0; node < b.table.tree.size(); ++node)
+    if (const uint32_t child = b.table.tree[node].child; child & shared::kLightLeaf)
+      b.table.lights[child & ~shared::kLightLeaf].node = node;
 }
 
 }  // namespace
@@ -136,9 +160,10 @@ LightTable buildLightTable(const Scene& scene, const std::vector<GeometryBlock>&
     b.add(d, 4.0 * kPi * kPi * sceneRadius * sceneRadius * environment);
   }
 
+  plantTree(b);
   const std::vector<AliasEntry> alias = buildAliasTable(b.powers);
   for (size_t i = 0; i < alias.size(); ++i) {
-    b.table.lights[i].probability = alias[i].probability;
+    b.table.lights[i].probability = alias[i].probability * (1.0f - b.table.treeShare);
     b.table.lights[i].aliasShare = alias[i].share;
     b.table.lights[i].alias = alias[i].alias;
   }

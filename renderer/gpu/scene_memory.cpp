@@ -2,7 +2,9 @@
 
 #include "renderer/gpu/environment_table.hpp"
 #include "renderer/gpu/geometry.hpp"
+#include "renderer/gpu/light_tree.hpp"
 #include "renderer/gpu/material_table.hpp"
+#include "renderer/scene/scene_needs.hpp"
 
 namespace limn::gpu {
 namespace {
@@ -22,17 +24,25 @@ bool isEmitter(const Scene& scene, const BlockSize& block) {
   return !material.unlit && shines(material.emission);
 }
 
-/// Entries of the light table: punctual lights, emissive triangles, the environment.
-uint64_t lightCount(const Scene& scene, std::span<const BlockSize> blocks) {
-  uint64_t count = shines(scene.environment.radiance) ? 1 : 0;
+/// Entries of the light table, and of its tree.
+struct LightCounts {
+  uint64_t placed = 0;    ///< points, spots, emissive triangles
+  uint64_t infinite = 0;  ///< directional lights and the environment
+  uint64_t all() const { return placed + infinite; }
+  uint64_t nodes() const { return placed > kFewLights ? lightTreeNodes(placed) : 0; }
+};
+LightCounts lightCounts(const Scene& scene, std::span<const BlockSize> blocks) {
+  LightCounts counts;
+  counts.infinite = shines(scene.environment.radiance) ? 1 : 0;
   for (const Node& node : scene.nodes) {
     if (node.light == kNone) continue;
     const Light& light = scene.lights[size_t(node.light)];
-    count += light.intensity > 0.0f && shines(light.color);
+    if (!(light.intensity > 0.0f && shines(light.color))) continue;
+    ++(light.type == LightType::directional ? counts.infinite : counts.placed);
   }
   for (const BlockSize& block : blocks)
-    if (isEmitter(scene, block)) count += block.solidTriangles;
-  return count;
+    if (isEmitter(scene, block)) counts.placed += block.solidTriangles;
+  return counts;
 }
 
 uint64_t texelCount(const Scene& scene) {
@@ -60,7 +70,7 @@ void addSceneMemory(MemoryPrediction& memory, const Scene& scene, std::span<cons
   uint64_t triangles = 0, vertices = 0;
   for (const BlockSize& block : blocks) triangles += block.triangles, vertices += block.vertices;
   const MaterialTable materials = buildMaterialTable(scene);
-  const uint64_t lights = lightCount(scene, blocks);
+  const LightCounts lights = lightCounts(scene, blocks);
 
   memory.device.add("scene", tableBytes<glm::uvec4>(triangles) + tableBytes<glm::vec4>(vertices) +
                                  tableBytes<PackedVertex>(vertices) + sizeof(shared::SceneInfo) +
@@ -68,12 +78,14 @@ void addSceneMemory(MemoryPrediction& memory, const Scene& scene, std::span<cons
                                  tableBytes<shared::TextureSlot>(materials.slots.size()));
   memory.device.add("textures", tableBytes<shared::ImageInfo>(scene.images.size()) +
                                     tableBytes<uint32_t>(texelCount(scene)));
-  memory.device.add("lights", tableBytes<shared::LightData>(lights) + tableBytes<uint32_t>(triangles));
+  memory.device.add("lights", tableBytes<shared::LightData>(lights.all()) +
+                                  tableBytes<shared::LightNode>(lights.nodes()) + tableBytes<uint32_t>(triangles));
   addEnvironment(memory.device, scene);
 
   // Corners, indices and positions of every block, and what is known of the lights.
   memory.host.add("mirror", blocks.size() * sizeof(GeometryBlock) + (4 * triangles + vertices) * sizeof(glm::vec3) +
-                                lights * sizeof(shared::LightData) + triangles * sizeof(uint32_t));
+                                lights.all() * sizeof(shared::LightData) + lights.nodes() * sizeof(shared::LightNode) +
+                                triangles * sizeof(uint32_t));
 }
 
 }  // namespace limn::gpu

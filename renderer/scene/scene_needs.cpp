@@ -50,6 +50,21 @@ void addMaterial(SceneNeeds& needs, const Material& m) {
   needs.sharp |= mayBeSharp(m);
 }
 
+/// Lights at a place, those without power or area too.
+uint64_t placedLights(const Scene& scene) {
+  uint64_t count = 0;
+  for (const Node& node : scene.nodes) {
+    count += node.light != kNone && scene.lights[size_t(node.light)].type != LightType::directional;
+    if (node.mesh == kNone) continue;
+    for (const Primitive& primitive : scene.meshes[size_t(node.mesh)].primitives) {
+      if (primitive.material == kNone) continue;
+      const Material& m = scene.materials[size_t(primitive.material)];
+      if (!m.unlit && shines(m.emission)) count += primitive.indices.size() / 3;
+    }
+  }
+  return count;
+}
+
 }  // namespace
 
 SceneNeeds sceneNeeds(const Scene& scene) {
@@ -72,6 +87,7 @@ SceneNeeds sceneNeeds(const Scene& scene) {
       addMaterial(needs, primitive.material == kNone ? Material{} : scene.materials[slot]);
     }
   }
+  needs.manyLights = placedLights(scene) > kFewLights;
   needs.environment = shines(scene.environment.radiance);
   needs.environmentImage = needs.environment && scene.environment.image;
   return needs;
@@ -92,6 +108,7 @@ std::span<const SceneNeedFlag> sceneNeedFlags() {
       {"mirror", &SceneNeeds::mirror},
       {"sharp", &SceneNeeds::sharp},
       {"vertexColors", &SceneNeeds::vertexColors},
+      {"manyLights", &SceneNeeds::manyLights},
   };
   static_assert(std::size(kFlags) * sizeof(bool) == sizeof(SceneNeeds), "every flag is listed");
   return kFlags;

@@ -23,11 +23,15 @@ struct SceneNeeds {
   bool mirror = false;  ///< roughness below the delta limit, or smooth transmission
   bool sharp = false;   ///< a lobe too narrow for splats: roughness that may fall below kSharpRoughness, transmission, a coat
   bool vertexColors = false;
+  bool manyLights = false;  ///< more than kFewLights: one is chosen by what it may bring, not by power alone
   bool operator==(const SceneNeeds&) const = default;
 };
 
 /// Perceptual roughness under which a lobe counts as sharp; its square is kSplatAlpha of the shaders.
 constexpr float kSharpRoughness = 0.4473f;
+
+/// Point lights, spots and emissive triangles, up to which it does not pay to look at each place which of them matter.
+constexpr uint64_t kFewLights = 16;
 
 SceneNeeds sceneNeeds(const Scene& scene);
 

@@ -73,6 +73,7 @@ Result<void> PathTracing::prepare(const TechniqueContext& context, const SceneNe
 std::vector<PassUse> PathTracing::passes() const {
   return {{"path tracing", true},
           {"next-event estimation", m_needs.punctualLights || m_needs.emissiveTriangles || m_needs.environment},
+          {"light tree", m_needs.manyLights},
           {"environment importance table", m_needs.environmentImage},
           {"adaptive sampling", m_adaptive}};
 }

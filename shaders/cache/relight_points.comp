@@ -27,9 +27,11 @@ layout(push_constant, scalar) uniform Push { RelightPush push; };
 
 struct SideLight { vec3 front, back; };
 
-LightSample sampleFor(Surface s, LightData light, float uAlias, vec2 u) {
-  if (kUseTriangleLights && light.type == kLightTriangle) return sampleTriangleLightEvenly(light, s.posR, u);
-  return sampleChosenLight(light, s.posR, uAlias, u);
+LightSample sampleFor(Surface s, uint index, float probability, float uAlias, vec2 u) {
+  if (index == kNoIndex) return LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0);
+  LightData light = lights[index];
+  if (kUseTriangleLights && light.type == kLightTriangle) return sampleTriangleLightEvenly(light, probability, s.posR, u);
+  return sampleChosenLight(light, probability, s.posR, uAlias, u);
 }
 
 // What of a light's sample arrives on the surface, its cosine included. A normal map tilts the side it is on; where the
@@ -58,8 +60,10 @@ void addTurn(uint point, Surface s, uint turn, inout SideLight sum, inout uint d
   uint sampleIndex = push.samplesBefore + turn - push.lobeLights;
   Sampler sampler_ = makeSampler(point, whole ? ~turn : sampleIndex, push.seed);
   vec2 choice = next2D(sampler_), u = next2D(sampler_);
-  uint chosen = chooseLight(choice), index = whole ? turn : chosen;
-  LightSample light = sampleFor(s, lights[index], choice.y, u);
+  uint index = turn;
+  float probability = 1.0;
+  if (!whole) index = chooseLight(LightReceiver(s.posR, s.geometricNormal, true), choice, probability);
+  LightSample light = sampleFor(s, index, probability, choice.y, u);
   vec3 arriving = irradianceOf(s, light);
   if (!isFinite(arriving)) {
     ++discarded;
@@ -72,7 +76,7 @@ void addTurn(uint point, Surface s, uint turn, inout SideLight sum, inout uint d
   sum.front += !whole && front ? arriving : vec3(0.0);
   sum.back += whole || front ? vec3(0.0) : arriving;
   if (!kUseLobes || push.lobes == 0u || turn >= kLobesPerPoint) return;
-  float share = whole ? lights[index].probability : 1.0 / float(min(push.samples, kLobesPerPoint - push.lobeLights));
+  float share = whole ? 1.0 : 1.0 / float(min(push.samples, kLobesPerPoint - push.lobeLights));
   bool shines = maxComponent(arriving) > 0.0 && (whole || index >= push.lobeLights);
   pointLobes[point].lobe[turn] =
       PointLobe(shines ? octEncode(light.dirW) : 0u, shines ? packRgbe(arriving * share) : 0u);

@@ -16,6 +16,7 @@ struct Path {
   vec3 throughput;
   float etaScale;      // undoes the radiance scaling of refraction for Russian roulette
   float bsdfPdf;       // of dirR; 0 after a mirror or from the camera
+  LightReceiver from;  // whom lights were chosen for where dirR began
   vec3 absorption;     // [1/m] of the medium the ray is in
   uint bounce;         // surfaces scattered at, mirrors included
   uint maxBounces;     // after which no surface scatters any more
@@ -29,6 +30,7 @@ Path newPath(Sampler sampler_, uint maxBounces, uint rouletteStart) {
   p.throughput = vec3(1.0);
   p.etaScale = 1.0;
   p.bsdfPdf = 0.0;
+  p.from = LightReceiver(vec3(0.0), vec3(0.0), false);
   p.absorption = vec3(0.0);
   p.bounce = 0u;
   p.maxBounces = maxBounces;
@@ -54,15 +56,17 @@ void addEnvironment(inout Path p) {
 void addEmission(inout Path p, Surface s, Hit hit) {
   float weight = 1.0;
   uint index = texelFetch(triangleLights, int(hit.triangle)).x;
-  if (p.bsdfPdf > 0.0 && index != kNoIndex)
-    weight = powerHeuristic(p.bsdfPdf, triangleLightPdf(lights[index], hit.t, abs(dot(s.geometricNormal, p.dirR))));
+  if (p.bsdfPdf > 0.0 && index != kNoIndex) {
+    float probability = lightProbability(lights[index], p.from), cosLight = abs(dot(s.geometricNormal, p.dirR));
+    weight = powerHeuristic(p.bsdfPdf, triangleLightPdf(lights[index], probability, hit.t, cosLight));
+  }
   addRadiance(p, p.throughput * s.emission * weight, p.bounce);
 }
 
 void addLights(inout Path p, Bsdf bsdf, vec3 woW) {
   vec2 choice = next2D(p.sampler_), u = next2D(p.sampler_);
   if (bsdf.shares.diffuse <= 0.0 && isMirror(bsdf.s.alpha) && bsdf.s.clearcoat <= 0.0) return;
-  LightSample light = sampleLight(bsdf.s.posR, choice, u);
+  LightSample light = sampleLight(receiverOf(bsdf.s), choice, u);
   if (!(maxComponent(light.radiance) > 0.0)) return;
   float bsdfPdf;
   vec3 value = evaluateBsdf(bsdf, woW, light.dirW, bsdfPdf);
@@ -105,6 +109,7 @@ bool advance(inout Path p) {
 
   p.throughput *= next.weight;
   p.bsdfPdf = next.mirror ? 0.0 : next.pdf;
+  p.from = receiverOf(s);
   if (kUseTransmission && next.transmitted && !bsdf.thin) {
     p.absorption = s.frontFace ? materials[s.material].absorption : vec3(0.0);
     p.etaScale *= bsdf.eta * bsdf.eta;

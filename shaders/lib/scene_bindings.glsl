@@ -19,6 +19,7 @@ layout(constant_id = 6) const bool kUsePunctualLights = true;
 layout(constant_id = 7) const bool kUseTriangleLights = true;
 layout(constant_id = 8) const bool kUseEnvironment = true;
 layout(constant_id = 9) const bool kUseEnvironmentImage = true;
+layout(constant_id = 10) const bool kUseLightTree = true;
 
 #ifdef LIMN_RAY_QUERY
 layout(binding = BINDING_ACCELERATION) uniform accelerationStructureEXT bvhAcceleration;
@@ -33,6 +34,7 @@ layout(binding = BINDING_TRIANGLE_LIGHTS) uniform usamplerBuffer triangleLights;
 layout(binding = BINDING_MATERIALS, scalar) readonly buffer Materials { MaterialData materials[]; };
 layout(binding = BINDING_TEXTURE_SLOTS, scalar) readonly buffer TextureSlots { TextureSlot textureSlots[]; };
 layout(binding = BINDING_LIGHTS, scalar) readonly buffer Lights { LightData lights[]; };
+layout(binding = BINDING_LIGHT_TREE) uniform usamplerBuffer lightTree;          // three texels a LightNode
 layout(binding = BINDING_IMAGES, scalar) readonly buffer Images { ImageInfo images[]; };
 layout(binding = BINDING_TEXELS) uniform usamplerBuffer texels;                // RGBA8 in one word
 layout(binding = BINDING_ENVIRONMENT) uniform samplerBuffer environmentTexels; // RGBA float

@@ -32,7 +32,7 @@ vec3 sampleSphericalTriangle(vec3 a, vec3 b, vec3 c, vec2 u, out float solidAngl
   return cosTheta * b + sqrt(max(1.0 - cosTheta * cosTheta, 0.0)) * across(corner, b);
 }
 
-LightSample sampleTriangleLightEvenly(LightData light, vec3 p, vec2 u) {
+LightSample sampleTriangleLightEvenly(LightData light, float probability, vec3 p, vec2 u) {
   uvec4 t = texelFetch(triangles, int(light.triangle));
   vec3 p0 = texelFetch(positions, int(t.x)).xyz;
   vec3 e1 = texelFetch(positions, int(t.y)).xyz - p0, e2 = texelFetch(positions, int(t.z)).xyz - p0, from = p - p0;
@@ -42,10 +42,10 @@ LightSample sampleTriangleLightEvenly(LightData light, vec3 p, vec2 u) {
   vec3 h = cross(dir, e2), q = cross(from, e1);
   float inverse = 1.0 / dot(e1, h), d = dot(e2, q) * inverse;
   vec2 barycentrics = clamp(vec2(dot(from, h), dot(dir, q)) * inverse, vec2(0.0), vec2(1.0));
-  if (!(solidAngle >= kLeastSolidAngle && d > 0.0 && d < kInfinity)) return sampleTriangleLight(light, p, u);
+  if (!(solidAngle >= kLeastSolidAngle && d > 0.0 && d < kInfinity)) return sampleTriangleLight(light, probability, p, u);
   LightSample s;
   s.dirW = dir;
-  s.pdf = light.probability / solidAngle;
+  s.pdf = probability / solidAngle;
   float scale = max(maxComponent(abs(e1)), maxComponent(abs(e2)));
   float cosLight = abs(dot(normalize(cross(e1 / scale, e2 / scale)), dir));
   s.distance = distanceShortOf(p0, scale, cosLight, d);

@@ -89,11 +89,30 @@ struct LightData {
   float spotScale;    // ramp = clamp(cos * spotScale + spotOffset, 0, 1)²
   float spotOffset;
   float area;         // [m²]; triangle lights
-  float probability;  // of being chosen, by power
+  float probability;  // of being chosen by the alias table, for its power
   float aliasShare;   // alias table: keep this entry below it
   uint alias;         // else take this one
+  uint node;          // its leaf in the light tree; kNoIndex: it is in none
 };
-LIMN_ASSERT_SIZE(LightData, 72);
+LIMN_ASSERT_SIZE(LightData, 76);
+
+LIMN_CONST_UINT(kLightLeaf, 1u << 31);     // of LightNode.child
+LIMN_CONST_FLOAT(kTwoSidedEnd, 0.0f);      // LightNode.cosEnd of emitters that shine by the cosine, from both faces
+LIMN_CONST_FLOAT(kSpotEnd, 0.999f);        // of spots: nothing outside the cone, but for what rounding needs
+
+// Lights of one branch of the light tree, bounded in place and direction. Siblings follow each other, and nodes 0 and 1
+// are the roots. [Conty Estevez and Kulla 2018]
+struct LightNode {
+  vec3 centerR;       // of a sphere around them, render space
+  float radius;       // [m]
+  vec3 axis;          // unit, of a cone that holds the ways their emission is strongest
+  float cosOpening;   // of half the cone's angle; -1: any way
+  float intensity;    // [W/sr] of all together, each the way it is strongest; luminance
+  float cosEnd;       // of the angle off the cone beyond which nothing is sent
+  uint child;         // first of two; or kLightLeaf and the light's index
+  uint parent;        // kNoIndex for the roots
+};
+LIMN_ASSERT_SIZE(LightNode, 48);
 
 // One for the scene.
 struct SceneInfo {
@@ -107,8 +126,9 @@ struct SceneInfo {
   uint distributionHeight;
   float sceneRadius;         // [m], of the bounding sphere
   uint triangleCount;
+  float lightTreeShare;      // chance that a light is chosen by the light tree, not the alias table; 0: there is no tree
 };
-LIMN_ASSERT_SIZE(SceneInfo, 48);
+LIMN_ASSERT_SIZE(SceneInfo, 52);
 
 struct CameraData {
   vec3 eyeR;        // [m], render space

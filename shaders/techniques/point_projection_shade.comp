@@ -5,7 +5,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/shared/bvh_shared.h"
 #include "shaders/lib/scene_bindings.glsl"
-layout(constant_id = 10) const bool kUseSharp = true;
+layout(constant_id = 11) const bool kUseSharp = true;
 #include "shaders/lib/film.glsl"
 #include "shaders/lib/lobe_split.glsl"
 #include "shaders/lib/camera.glsl"
@@ -32,6 +32,7 @@ struct Walk {
   vec3 throughput;
   vec3 absorption;    // [1/m] of the medium the ray is in
   float lobePdf;      // of dirR; 0 after a mirror or from the camera
+  LightReceiver from; // whom lights were chosen for where dirR began
   uint depth;         // surfaces met before
   FilmSample result;  // all light that no gather brought
   vec3 gathered;
@@ -46,6 +47,7 @@ Walk startWalk(uint pixel) {
   w.throughput = vec3(1.0);
   w.absorption = vec3(0.0);
   w.lobePdf = 0.0;
+  w.from = LightReceiver(vec3(0.0), vec3(0.0), false);
   w.depth = 0u;
   w.result = FilmSample(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0);
   w.gathered = vec3(0.0);
@@ -68,8 +70,10 @@ void addEnvironment(inout Walk w) {
 void addEmission(inout Walk w, Surface s, Hit hit) {
   float weight = 1.0;
   uint index = texelFetch(triangleLights, int(hit.triangle)).x;
-  if (w.lobePdf > 0.0 && index != kNoIndex)
-    weight = powerHeuristic(w.lobePdf, triangleLightPdf(lights[index], hit.t, abs(dot(s.geometricNormal, w.dirR))));
+  if (w.lobePdf > 0.0 && index != kNoIndex) {
+    float probability = lightProbability(lights[index], w.from), cosLight = abs(dot(s.geometricNormal, w.dirR));
+    weight = powerHeuristic(w.lobePdf, triangleLightPdf(lights[index], probability, hit.t, cosLight));
+  }
   addRadiance(w, w.throughput * s.emission * weight, w.depth);
 }
 
@@ -78,7 +82,7 @@ uint alphaKey(Walk w, uint salt) { return hashCombine(w.sampler_.key ^ salt, w.s
 // Rough lobes are lit by this alone; narrow ones share the work with the ray that follows them.
 void addLights(inout Walk w, Bsdf rough, Bsdf sharp, vec3 woW) {
   vec2 choice = next2D(w.sampler_), u = next2D(w.sampler_);
-  LightSample light = sampleLight(rough.s.posR, choice, u);
+  LightSample light = sampleLight(receiverOf(rough.s), choice, u);
   if (!(maxComponent(light.radiance) > 0.0)) return;
   float pdf;
   vec3 value = evaluateBsdf(rough, woW, light.dirW, pdf);
@@ -112,6 +116,7 @@ bool followSharpLobe(inout Walk w, Bsdf bsdf, Bsdf sharp, vec3 woW) {
   if (!(maxComponent(next.weight) > 0.0)) return false;
   w.throughput *= next.weight;
   w.lobePdf = next.mirror ? 0.0 : next.pdf;
+  w.from = receiverOf(bsdf.s);
   if (kUseTransmission && next.transmitted && !bsdf.thin)
     w.absorption = bsdf.s.frontFace ? materials[bsdf.s.material].absorption : vec3(0.0);
   w.originR = offsetOrigin(bsdf.s.posR, bsdf.s.geometricNormal, next.dirW, bsdf.s.extent);

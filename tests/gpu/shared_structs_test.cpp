@@ -15,6 +15,7 @@ struct Structs {
   shared::ImageInfo imageInfo[2];
   shared::MaterialData materialData[2];
   shared::LightData lightData[2];
+  shared::LightNode lightNode[2];
   shared::SceneInfo sceneInfo[2];
   shared::CameraData cameraData[2];
   shared::PathTracingPush pathTracingPush[2];
@@ -59,10 +60,12 @@ void fillScene(Filler& fill, Structs& s) {
        m.clearcoat, m.clearcoatRoughness, m.alphaCutoff, m.absorption, m.flags, m.firstSlot, m.slotCount);
   auto& l = s.lightData[1];
   fill(sizeof l, l.posR, l.type, l.dirR, l.triangle, l.color, l.invRange, l.spotScale, l.spotOffset, l.area,
-       l.probability, l.aliasShare, l.alias);
+       l.probability, l.aliasShare, l.alias, l.node);
+  auto& b = s.lightNode[1];
+  fill(sizeof b, b.centerR, b.radius, b.axis, b.cosOpening, b.intensity, b.cosEnd, b.child, b.parent);
   auto& n = s.sceneInfo[1];
   fill(sizeof n, n.lightCount, n.environmentLight, n.environmentWidth, n.environmentHeight, n.environmentRadiance,
-       n.environmentRotation, n.distributionWidth, n.distributionHeight, n.sceneRadius, n.triangleCount);
+       n.environmentRotation, n.distributionWidth, n.distributionHeight, n.sceneRadius, n.triangleCount, n.lightTreeShare);
   auto& c = s.cameraData[1];
   fill(sizeof c, c.eyeR, c.clipNear, c.right, c.perspective, c.up, c.width, c.forward, c.height);
 }

@@ -53,7 +53,7 @@ HardFigure deviation(const HardCase& hard, HardCell& cell, const PicturePair& pa
   if (!cell.biased) {
     const Deviation d = deviationOf(pair, reference, "beauty", hard.rounding);
     cell.unit = "sigma";
-    return figure(hard.rare ? d.whole : std::max(d.whole, d.worstTile), sigmasOf((d.tiles + 1) * kMostCases), known);
+    return figure(std::max(d.whole, d.worstTile), sigmasOf((d.tiles + 1) * kMostCases), known);
   }
   cell.unit = isBlack(hard) ? "leak" : "relMSE";
   if (isBlack(hard)) return figure(cell.largest / hard.outside, kBiasedLeak, known);

@@ -37,7 +37,6 @@ struct HardCase {
   double outside = 1.0;              ///< of a picture that must be black: the radiance that could leak in [W·sr⁻¹·m⁻²]
   uint32_t bounces = 4;
   bool caustics = false;             ///< fireflies are counted and not judged
-  bool rare = false;                 ///< light is found too rarely for the noise of a block to be told: the mean alone is compared
   std::vector<KnownMiss> known;
 };
 

@@ -169,11 +169,6 @@ std::vector<HardCase> makeHardCases() {
   cases[4].twinName = "sky with zeros";
   cases[4].twin = [] { return brokenSky(false); };
   for (const size_t i : {1u, 3u, 7u}) cases[i].rounding = 1e-3;
-  KnownMiss byPower;
-  byPower.reason = "Lights are chosen by power alone: one sample in ten thousand goes to the light that matters";
-  byPower.fireflies = 0.05;
-  cases[2].rare = true;
-  cases[2].known = {byPower};
   return cases;
 }
 

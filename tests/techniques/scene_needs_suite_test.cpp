@@ -77,6 +77,12 @@ std::vector<NeedCase> needCases() {
       {"vertexColors", none, none, [](Scene& s) {
          Primitive& wall = s.meshes[0].primitives[0];
          wall.colors.assign(wall.positions.size(), glm::vec4(0.5f));
+       }},
+      {"manyLights", none, none, [](Scene& s) {
+         Node shown = s.nodes[0];
+         shown.light = 0, shown.mesh = kNone;
+         shown.children.clear();
+         for (uint64_t i = 0; i <= kFewLights; ++i) s.roots.push_back(uint32_t(s.nodes.size())), s.nodes.push_back(shown);
        }}};
 }
 

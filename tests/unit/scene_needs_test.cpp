@@ -57,6 +57,30 @@ TEST(SceneNeeds, MaterialFeatures) {
   EXPECT_EQ(needsOf([](Material& m) { m.roughness = 0; }), Names{});  // nothing specular to be smooth
 }
 
+TEST(SceneNeeds, LightsAtAPlaceAreCountedWhereverTheyAreShown) {
+  const auto lamps = [](LightType type, uint64_t count) {
+    return needsAfter([&](Scene& scene) {
+      scene.lights.resize(1);
+      scene.lights[0].type = type;
+      scene.nodes.resize(1 + count);
+      for (uint64_t i = 1; i <= count; ++i) scene.nodes[i].light = 0;
+    });
+  };
+  EXPECT_EQ(lamps(LightType::point, kFewLights), Names{"punctualLights"});
+  EXPECT_EQ(lamps(LightType::spot, kFewLights + 1), (Names{"punctualLights", "manyLights"}));
+  EXPECT_EQ(lamps(LightType::directional, kFewLights + 1), Names{"punctualLights"});
+  const auto panels = [](bool unlit) {
+    return needsAfter([&](Scene& scene) {
+      scene.materials[0].emission = {0, 1, 0};
+      scene.materials[0].unlit = unlit;
+      scene.nodes.resize(1 + kFewLights);
+      for (Node& node : scene.nodes) node.mesh = 0;
+    });
+  };
+  EXPECT_EQ(panels(false), (Names{"emissiveTriangles", "manyLights"}));
+  EXPECT_EQ(panels(true), Names{});
+}
+
 TEST(SceneNeeds, ATextureMayMakeAnyRoughnessSmooth) {
   const Names needs = needsOf([](Material& m) { m.metallic = 1, m.metallicRoughnessTexture.image = 0; });
   EXPECT_EQ(needs, (Names{"textures", "glossy", "mirror", "sharp"}));

@@ -49,13 +49,13 @@ void main() {
     result[i] = vec4(dirW, solidAngle);
   } else if (push.mode == kLightsChoose) {
     vec2 choice = vec2(random(), random());
-    uint chosen = chooseLight(choice);
+    uint chosen = chooseByPower(choice);
     result[i] = vec4(float(chosen), lights[chosen].probability, choice);
   } else if (push.mode == kLightsTriangle || push.mode == kLightsTriangleEvenly) {
     vec2 u = vec2(random(), random());
     LightSample s;
-    if (push.mode == kLightsTriangle) s = sampleTriangleLight(lights[push.light], push.posR, u);
-    else s = sampleTriangleLightEvenly(lights[push.light], push.posR, u);
+    if (push.mode == kLightsTriangle) s = sampleTriangleLight(lights[push.light], lights[push.light].probability, push.posR, u);
+    else s = sampleTriangleLightEvenly(lights[push.light], lights[push.light].probability, push.posR, u);
     result[2u * i] = vec4(s.dirW, s.distance);
     result[2u * i + 1u] = vec4(s.radiance, s.pdf);
   } else if (push.mode == kLightsEnvironment) {

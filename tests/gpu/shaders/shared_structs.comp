@@ -13,6 +13,7 @@ layout(binding = 0, scalar) readonly buffer Structs {
   ImageInfo imageInfo[2];
   MaterialData materialData[2];
   LightData lightData[2];
+  LightNode lightNode[2];
   SceneInfo sceneInfo[2];
   CameraData cameraData[2];
   PathTracingPush pathTracingPush[2];
@@ -57,6 +58,10 @@ void emitScene() {
   LightData l = lightData[1];
   emit(l.posR); emit(l.type); emit(l.dirR); emit(l.triangle); emit(l.color); emit(l.invRange); emit(l.spotScale);
   emit(l.spotOffset); emit(l.area); emit(l.probability); emit(l.aliasShare); emit(l.alias);
+  emit(l.node);
+  LightNode b = lightNode[1];
+  emit(b.centerR); emit(b.radius); emit(b.axis); emit(b.cosOpening); emit(b.intensity); emit(b.cosEnd); emit(b.child);
+  emit(b.parent);
   SceneInfo s = sceneInfo[1];
   emit(s.lightCount);
   emit(s.environmentLight);
@@ -68,6 +73,7 @@ void emitScene() {
   emit(s.distributionHeight);
   emit(s.sceneRadius);
   emit(s.triangleCount);
+  emit(s.lightTreeShare);
   CameraData c = cameraData[1];
   emit(c.eyeR);
   emit(c.clipNear);
