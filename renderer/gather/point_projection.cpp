@@ -9,7 +9,7 @@ namespace limn {
 namespace {
 
 // constant_id of kUseSharp and of the first of a gather's own
-constexpr size_t kSharpConstant = 11, kGatherConstants = 16;
+constexpr size_t kSharpConstant = 12, kGatherConstants = 16;
 
 /// Mirrors are none of a gather's business: that need says here whether points have lobes, so that the general variant,
 /// which has all needs, has them too.

@@ -1,6 +1,7 @@
 #include "renderer/scene/scene_needs.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace limn {
 namespace {
@@ -32,6 +33,15 @@ bool mayBeMirror(const Material& m) {
   return (reflectsSpecularly(m) && smooth) || smoothCoat;
 }
 
+/// Within this of 1 an index of refraction bends nothing, makeBsdf() of the shaders.
+constexpr float kNoIndexChange = 1e-3f;
+
+bool mayBePane(const Material& m) {
+  if (m.transmission <= 0.0f) return false;
+  const bool smooth = m.roughness <= kMirrorRoughness || m.metallicRoughnessTexture.present();
+  return std::abs(m.ior - 1.0f) < kNoIndexChange || (m.thickness <= 0.0f && smooth);
+}
+
 bool mayBeSharp(const Material& m) {
   const bool narrow = m.roughness < kSharpRoughness || m.metallicRoughnessTexture.present();
   return m.transmission > 0.0f || m.clearcoat > 0.0f || (reflectsSpecularly(m) && narrow);
@@ -44,6 +54,7 @@ void addMaterial(SceneNeeds& needs, const Material& m) {
   needs.emissiveTriangles |= shines(m.emission);
   needs.normalMaps |= m.normalTexture.present() || (m.clearcoat > 0.0f && m.clearcoatNormalTexture.present());
   needs.transmission |= m.transmission > 0.0f;
+  needs.panes |= mayBePane(m);
   needs.clearcoat |= m.clearcoat > 0.0f;
   needs.glossy |= reflectsSpecularly(m);
   needs.mirror |= mayBeMirror(m);
@@ -103,6 +114,7 @@ std::span<const SceneNeedFlag> sceneNeedFlags() {
       {"normalMaps", &SceneNeeds::normalMaps},
       {"alpha", &SceneNeeds::alpha},
       {"transmission", &SceneNeeds::transmission},
+      {"panes", &SceneNeeds::panes},
       {"clearcoat", &SceneNeeds::clearcoat},
       {"glossy", &SceneNeeds::glossy},
       {"mirror", &SceneNeeds::mirror},

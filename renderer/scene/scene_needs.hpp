@@ -18,6 +18,7 @@ struct SceneNeeds {
   bool normalMaps = false;
   bool alpha = false;  ///< MASK or BLEND materials in use
   bool transmission = false;
+  bool panes = false;  ///< transmission that bends no light: shadow rays go on behind it
   bool clearcoat = false;
   bool glossy = false;  ///< any specular reflection that is not rough diffuse
   bool mirror = false;  ///< roughness below the delta limit, or smooth transmission

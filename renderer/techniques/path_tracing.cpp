@@ -74,6 +74,7 @@ std::vector<PassUse> PathTracing::passes() const {
   return {{"path tracing", true},
           {"next-event estimation", m_needs.punctualLights || m_needs.emissiveTriangles || m_needs.environment},
           {"light tree", m_needs.manyLights},
+          {"shadow rays through panes", m_needs.panes},
           {"environment importance table", m_needs.environmentImage},
           {"adaptive sampling", m_adaptive}};
 }

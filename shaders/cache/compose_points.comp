@@ -23,6 +23,7 @@ struct Reflectances {
   vec3 diffuse;      // on the same side
   vec3 specular;     // on the same side, by microfacets
   vec3 transmitted;  // on the other side
+  bool pane;         // direct light passes it straight, and the points behind it have it already
 };
 
 // Mean over the hemisphere of what single scattering by GGX microfacets keeps, all of them reflecting fully; within
@@ -40,14 +41,15 @@ Reflectances reflectancesOf(Surface s) {
   r.diffuse = s.baseColor * (body * (1.0 - s.transmission));
   r.transmitted = kUseTransmission ? s.baseColor * (body * s.transmission) : vec3(0.0);
   vec3 mean = mix(meanSchlick(f.dielectricF0, f.dielectricF90), meanSchlick(s.baseColor, 1.0), s.metallic);
+  r.pane = kUsePanes && isPane(f);
   r.specular = kUseSpecular ? mean * (under * meanGgxAlbedo(s.alpha)) + (1.0 - under) : vec3(0.0);
   return r;
 }
 
 // Lobes give the glossy reflection of direct light; all else that microfacets reflect or let pass leaves diffusely, so
 // that no energy is lost.
-vec3 leaving(Reflectances r, vec3 direct, vec3 indirect, vec3 behind, bool hasLobes) {
-  vec3 all = direct + indirect;
+vec3 leaving(Reflectances r, vec3 direct, vec3 indirect, vec3 directBehind, vec3 indirectBehind, bool hasLobes) {
+  vec3 all = direct + indirect, behind = (r.pane ? vec3(0.0) : directBehind) + indirectBehind;
   return r.diffuse * all + r.specular * (hasLobes ? indirect : all) + r.transmitted * behind;
 }
 
@@ -63,8 +65,8 @@ void main() {
     if (kUseLobes && push.lobes != 0u) hasLobes = pointLobes[point].alpha > 0.0;
     PointLight light = pointLight[point];
     Reflectances r = reflectancesOf(s);
-    front = leaving(r, light.directFront, light.indirectFront, light.directBack + light.indirectBack, hasLobes);
-    back = leaving(r, light.directBack, light.indirectBack, light.directFront + light.indirectFront, hasLobes);
+    front = leaving(r, light.directFront, light.indirectFront, light.directBack, light.indirectBack, hasLobes);
+    back = leaving(r, light.directBack, light.indirectBack, light.directFront, light.indirectFront, hasLobes);
   }
   float w = hasLobes ? 1.0 : 0.0;
   pointRadiance[2u * point] = vec4(front, w);

@@ -70,7 +70,7 @@ void addTurn(uint point, Surface s, uint turn, inout SideLight sum, inout uint d
     arriving = vec3(0.0);
   }
   if (maxComponent(arriving) > 0.0)
-    if (occluded(s, light, hashCombine(sampler_.key, sampler_.index))) arriving = vec3(0.0);
+    arriving *= shareThatArrives(s, light, vec3(0.0), hashCombine(sampler_.key, sampler_.index));
 
   bool front = dot(s.geometricNormal, light.dirW) > 0.0;
   sum.front += !whole && front ? arriving : vec3(0.0);

@@ -10,7 +10,7 @@
 #include "shaders/shared/gather_shared.h"
 #include "shaders/shared/point_shared.h"
 #include "shaders/lib/scene_bindings.glsl"
-layout(constant_id = 11) const bool kUseSharp = true;
+layout(constant_id = 12) const bool kUseSharp = true;
 #include "shaders/lib/lobe_split.glsl"
 #include "shaders/lib/micro_buffer.glsl"
 #include "shaders/gather/allocation.glsl"

@@ -61,7 +61,10 @@ Bsdf makeBsdf(Surface s, vec3 woW) {
   f.dielectricF0 = min(r0 * s.specularColor, vec3(1.0)) * s.specular;
   f.dielectricF90 = s.specular;
   // Without a change of index nothing refracts: the half vector of a straight line does not exist.
-  if (f.exactFresnel && !f.thin && abs(s.ior - 1.0) < 1e-3) f.s.alpha = 0.0;
+  if (f.exactFresnel && !f.thin && abs(s.ior - 1.0) < 1e-3) {
+    f.s.alpha = 0.0;
+    f.eta = 1.0;
+  }
 
   float cosO = max(f.woL.z, 0.0);
   float reflectance = kUseSpecular ? luminance(reflectionFresnel(f, cosO)) : 0.0;
@@ -82,6 +85,18 @@ Bsdf makeBsdf(Surface s, vec3 woW) {
 }
 
 bool isMirror(float alpha) { return alpha <= kMinAlpha; }
+
+// Whether what is transmitted keeps its direction: a smooth thin wall, or no change of index.
+bool isPane(Bsdf f) {
+  return kUseTransmission && f.shares.transmission > 0.0 && isMirror(f.s.alpha) && (f.thin || f.eta == 1.0);
+}
+// What smooth transmission lets through where the viewer's direction makes `cosO` with the half vector, without 1/eta².
+vec3 smoothTransmittance(Bsdf f, vec3 woW, float cosO) {
+  float through = (1.0 - f.s.metallic) * f.s.transmission * (1.0 - maxComponent(dielectricFresnel(f, cosO)));
+  return f.s.baseColor * through * underClearcoat(f, woW);
+}
+// What a pane lets through of light that arrives straight from behind; as sampleBsdf() does.
+vec3 paneTransmittance(Bsdf f, vec3 woW) { return f.woL.z > 0.0 ? smoothTransmittance(f, woW, f.woL.z) : vec3(0.0); }
 
 // Value * |cos| of the clearcoat alone, and its pdf.
 float evaluateClearcoat(Bsdf f, vec3 woW, vec3 wiW, out float pdf) {
@@ -170,8 +185,7 @@ BsdfSample sampleTransmission(Bsdf f, vec3 woW, vec3 h, bool mirror, out vec3 di
     dirW = normalize(toWorld(f, wi));
   }
   if (dot(f.s.geometricNormal, dirW) >= 0.0 || !mirror) return kNoSample;
-  float through = (1.0 - f.s.metallic) * f.s.transmission * (1.0 - maxComponent(dielectricFresnel(f, cosO)));
-  vec3 weight = f.s.baseColor * (through / f.shares.transmission) * underClearcoat(f, woW);
+  vec3 weight = smoothTransmittance(f, woW, cosO) / f.shares.transmission;
   if (!f.thin) weight /= f.eta * f.eta;
   return mirrorSample(f, woW, dirW, weight, true);
 }

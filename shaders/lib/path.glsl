@@ -16,9 +16,10 @@ struct Path {
   vec3 throughput;
   float etaScale;      // undoes the radiance scaling of refraction for Russian roulette
   float bsdfPdf;       // of dirR; 0 after a mirror or from the camera
-  LightReceiver from;  // whom lights were chosen for where dirR began
+  LightReceiver from;  // whom lights were chosen for where the path last scattered
+  float travelled;     // [m] from there to originR, through panes
   vec3 absorption;     // [1/m] of the medium the ray is in
-  uint bounce;         // surfaces scattered at, mirrors included
+  uint bounce;         // surfaces scattered at, mirrors included, panes that were passed not
   uint maxBounces;     // after which no surface scatters any more
   uint rouletteStart;  // scatterings from which on Russian roulette ends paths
   FilmSample result;
@@ -31,6 +32,7 @@ Path newPath(Sampler sampler_, uint maxBounces, uint rouletteStart) {
   p.etaScale = 1.0;
   p.bsdfPdf = 0.0;
   p.from = LightReceiver(vec3(0.0), vec3(0.0), false);
+  p.travelled = 0.0;
   p.absorption = vec3(0.0);
   p.bounce = 0u;
   p.maxBounces = maxBounces;
@@ -58,7 +60,7 @@ void addEmission(inout Path p, Surface s, Hit hit) {
   uint index = texelFetch(triangleLights, int(hit.triangle)).x;
   if (p.bsdfPdf > 0.0 && index != kNoIndex) {
     float probability = lightProbability(lights[index], p.from), cosLight = abs(dot(s.geometricNormal, p.dirR));
-    weight = powerHeuristic(p.bsdfPdf, triangleLightPdf(lights[index], probability, hit.t, cosLight));
+    weight = powerHeuristic(p.bsdfPdf, triangleLightPdf(lights[index], probability, p.travelled + hit.t, cosLight));
   }
   addRadiance(p, p.throughput * s.emission * weight, p.bounce);
 }
@@ -71,9 +73,10 @@ void addLights(inout Path p, Bsdf bsdf, vec3 woW) {
   float bsdfPdf;
   vec3 value = evaluateBsdf(bsdf, woW, light.dirW, bsdfPdf);
   if (!(maxComponent(value) > 0.0)) return;
-  if (occluded(bsdf.s, light, hashCombine(p.sampler_.key, p.sampler_.index ^ (p.bounce << 24)))) return;
+  uint alphaState = hashCombine(p.sampler_.key, p.sampler_.index ^ (p.bounce << 24));
+  vec3 share = shareThatArrives(bsdf.s, light, absorptionTowards(p.absorption, bsdf, light), alphaState);
   float weight = light.pdf > 0.0 ? powerHeuristic(light.pdf, bsdfPdf) : 1.0;
-  addRadiance(p, p.throughput * value * light.radiance * transmittance(p.absorption, bsdf, light) * weight, p.bounce + 1u);
+  addRadiance(p, p.throughput * value * light.radiance * share * weight, p.bounce + 1u);
 }
 
 // Moves the path by one ray. False when it ended.
@@ -88,7 +91,7 @@ bool advance(inout Path p) {
   vec3 woW = -p.dirR;
   Surface s = makeSurface(hit.triangle, hit.barycentrics, woW);
   if (kUseTransmission && p.absorption != vec3(0.0)) p.throughput *= exp(-p.absorption * hit.t);
-  if (p.bounce == 0u) {
+  if (p.result.hit == 0.0) {
     p.result.albedo = s.baseColor;
     p.result.normal = s.normal;
     p.result.depth = hit.t;
@@ -99,24 +102,32 @@ bool advance(inout Path p) {
     return false;
   }
   if (kUseTriangleLights && (s.flags & kMaterialEmissive) != 0u) addEmission(p, s, hit);
-  if (p.bounce > p.maxBounces) return false;
+  bool ends = p.bounce > p.maxBounces;
+  if (ends && !kUsePanes) return false;
 
   Bsdf bsdf = makeBsdf(s, woW);
-  addLights(p, bsdf, woW);
+  if (!ends) addLights(p, bsdf, woW);
   vec2 lobe = next2D(p.sampler_), u = next2D(p.sampler_);
   BsdfSample next = sampleBsdf(bsdf, woW, lobe.x, u);
   if (!(maxComponent(next.weight) > 0.0)) return false;
 
   p.throughput *= next.weight;
-  p.bsdfPdf = next.mirror ? 0.0 : next.pdf;
-  p.from = receiverOf(s);
+  bool passes = kUsePanes && next.mirror && next.transmitted && isPane(bsdf);
+  if (passes) {  // light sampling goes on behind it, too
+    p.travelled += hit.t;
+  } else {
+    if (ends) return false;
+    p.bsdfPdf = next.mirror ? 0.0 : next.pdf;
+    p.from = receiverOf(s);
+    p.travelled = 0.0;
+    ++p.bounce;
+  }
   if (kUseTransmission && next.transmitted && !bsdf.thin) {
     p.absorption = s.frontFace ? materials[s.material].absorption : vec3(0.0);
     p.etaScale *= bsdf.eta * bsdf.eta;
   }
   p.originR = offsetOrigin(s.posR, s.geometricNormal, next.dirW, s.extent);
   p.dirR = next.dirW;
-  ++p.bounce;
   if (p.bounce >= p.rouletteStart) {
     float survive = min(0.95, maxComponent(p.throughput) * p.etaScale);
     if (lobe.y >= survive) return false;

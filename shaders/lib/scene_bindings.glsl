@@ -20,6 +20,7 @@ layout(constant_id = 7) const bool kUseTriangleLights = true;
 layout(constant_id = 8) const bool kUseEnvironment = true;
 layout(constant_id = 9) const bool kUseEnvironmentImage = true;
 layout(constant_id = 10) const bool kUseLightTree = true;
+layout(constant_id = 11) const bool kUsePanes = true;
 
 #ifdef LIMN_RAY_QUERY
 layout(binding = BINDING_ACCELERATION) uniform accelerationStructureEXT bvhAcceleration;

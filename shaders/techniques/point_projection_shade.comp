@@ -5,7 +5,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/shared/bvh_shared.h"
 #include "shaders/lib/scene_bindings.glsl"
-layout(constant_id = 11) const bool kUseSharp = true;
+layout(constant_id = 12) const bool kUseSharp = true;
 #include "shaders/lib/film.glsl"
 #include "shaders/lib/lobe_split.glsl"
 #include "shaders/lib/camera.glsl"
@@ -32,7 +32,8 @@ struct Walk {
   vec3 throughput;
   vec3 absorption;    // [1/m] of the medium the ray is in
   float lobePdf;      // of dirR; 0 after a mirror or from the camera
-  LightReceiver from; // whom lights were chosen for where dirR began
+  LightReceiver from; // whom lights were chosen for where the ray last scattered
+  float travelled;    // [m] from there to originR, through panes
   uint depth;         // surfaces met before
   FilmSample result;  // all light that no gather brought
   vec3 gathered;
@@ -48,6 +49,7 @@ Walk startWalk(uint pixel) {
   w.absorption = vec3(0.0);
   w.lobePdf = 0.0;
   w.from = LightReceiver(vec3(0.0), vec3(0.0), false);
+  w.travelled = 0.0;
   w.depth = 0u;
   w.result = FilmSample(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0);
   w.gathered = vec3(0.0);
@@ -72,7 +74,7 @@ void addEmission(inout Walk w, Surface s, Hit hit) {
   uint index = texelFetch(triangleLights, int(hit.triangle)).x;
   if (w.lobePdf > 0.0 && index != kNoIndex) {
     float probability = lightProbability(lights[index], w.from), cosLight = abs(dot(s.geometricNormal, w.dirR));
-    weight = powerHeuristic(w.lobePdf, triangleLightPdf(lights[index], probability, hit.t, cosLight));
+    weight = powerHeuristic(w.lobePdf, triangleLightPdf(lights[index], probability, w.travelled + hit.t, cosLight));
   }
   addRadiance(w, w.throughput * s.emission * weight, w.depth);
 }
@@ -90,8 +92,9 @@ void addLights(inout Walk w, Bsdf rough, Bsdf sharp, vec3 woW) {
     vec3 narrow = evaluateBsdf(sharp, woW, light.dirW, pdf);
     value += narrow * (light.pdf > 0.0 ? powerHeuristic(light.pdf, pdf) : 1.0);
   }
-  if (!(maxComponent(value) > 0.0) || occluded(rough.s, light, alphaKey(w, 0u))) return;
-  addRadiance(w, w.throughput * value * light.radiance * transmittance(w.absorption, rough, light), w.depth + 1u);
+  if (!(maxComponent(value) > 0.0)) return;
+  vec3 share = shareThatArrives(rough.s, light, absorptionTowards(w.absorption, rough, light), alphaKey(w, 0u));
+  addRadiance(w, w.throughput * value * light.radiance * share, w.depth + 1u);
 }
 
 // At the first surface the pixels around know more; behind a mirror the points do.
@@ -109,14 +112,19 @@ void addGathered(inout Walk w, Bsdf rough, vec3 woW) {
 }
 
 // Turns the ray into a narrow lobe of the surface. False when the surface has none.
-bool followSharpLobe(inout Walk w, Bsdf bsdf, Bsdf sharp, vec3 woW) {
+bool followSharpLobe(inout Walk w, Bsdf bsdf, Bsdf sharp, vec3 woW, float t) {
   if (!kUseSharp || !hasSharpPart(bsdf)) return false;
   vec2 lobe = next2D(w.sampler_), u = next2D(w.sampler_);
   BsdfSample next = sampleBsdf(sharp, woW, lobe.x, u);
   if (!(maxComponent(next.weight) > 0.0)) return false;
   w.throughput *= next.weight;
-  w.lobePdf = next.mirror ? 0.0 : next.pdf;
-  w.from = receiverOf(bsdf.s);
+  if (kUsePanes && next.mirror && next.transmitted && isPane(sharp)) {  // light sampling goes on behind it, too
+    w.travelled += t;
+  } else {
+    w.lobePdf = next.mirror ? 0.0 : next.pdf;
+    w.from = receiverOf(bsdf.s);
+    w.travelled = 0.0;
+  }
   if (kUseTransmission && next.transmitted && !bsdf.thin)
     w.absorption = bsdf.s.frontFace ? materials[bsdf.s.material].absorption : vec3(0.0);
   w.originR = offsetOrigin(bsdf.s.posR, bsdf.s.geometricNormal, next.dirW, bsdf.s.extent);
@@ -155,7 +163,7 @@ bool advance(inout Walk w) {
   Bsdf bsdf = makeBsdf(s, woW), rough = roughPart(bsdf), sharp = sharpPart(bsdf);
   addLights(w, rough, sharp, woW);
   addGathered(w, rough, woW);
-  return followSharpLobe(w, bsdf, sharp, woW);
+  return followSharpLobe(w, bsdf, sharp, woW, hit.t);
 }
 
 // Looked-up light goes stale when more of it is gathered, everything else is kept: the two means are apart, and the film

@@ -4,7 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/shared/bvh_shared.h"
 #include "shaders/lib/scene_bindings.glsl"
-layout(constant_id = 11) const bool kUseSharp = true;
+layout(constant_id = 12) const bool kUseSharp = true;
 #include "shaders/lib/lobe_split.glsl"
 #include "shaders/lib/camera.glsl"
 #include "shaders/lib/alpha.glsl"

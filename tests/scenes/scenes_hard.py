@@ -240,7 +240,7 @@ def _sphere_in_the_box(material, position):
 
 def ior_1():
     """A sphere of index 1 without absorption hangs over the short block: it bends and reflects nothing, so light
-    passes as if it were not there (shadow rays that stop at transmissive surfaces darken its shadow)."""
+    passes as if it were not there (where shadow rays stop at it, its shadow is dark)."""
     return cornell(
         "hard-ior-1", extra=_sphere_in_the_box(materials.glass("Nothing", 1.0, thickness=0.12), (0.186, 0.26, 0.168))
     )

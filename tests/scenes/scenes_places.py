@@ -203,6 +203,39 @@ def thin_furniture():
     return scene.glb()
 
 
+def _wall_with_window(x, z0, z1, height, low, high):
+    """A wall in the plane x from z0 to z1 that faces -x, with an opening between two corners (y, z)."""
+    (y0, w0), (y1, w1) = low, high
+    parts = ((0.0, height, z0, w0), (0.0, height, w1, z1), (0.0, y0, w0, w1), (y1, height, w0, w1))
+    return merged([grid((x, bottom, a), (0.0, 0.0, b - a), (0.0, top - bottom, 0.0)) for bottom, top, a, b in parts])
+
+
+def sunroom():
+    """A room whose only light is the sun behind the two panes of a window."""
+    scene = Builder("sunroom")
+    white = scene.add_material(materials.lambert("White", (0.75, 0.74, 0.70)))
+    wood = scene.add_material(materials.glossy("Floor", (0.36, 0.22, 0.12), 0.4))
+    blue = scene.add_material(materials.lambert("Blue", (0.18, 0.28, 0.48)))
+    room(scene, (-2.0, 0.0, -2.0), (2.0, 2.5, 3.0), (white, None, wood, white, white, blue))
+    low, high = (0.8, -1.2), (2.1, 1.0)
+    scene.add_object("Right wall", _wall_with_window(2.0, -2.0, 3.0, 2.5, low, high), white)
+    bar = bevel_box((0.05, high[0] - low[0], 0.05), 0.004, 2)
+    scene.add_object("Bar", bar, white, translation=(2.0, 0.5 * (low[0] + high[0]), -0.1))
+    clear = scene.add_material(materials.glass("Window pane", 1.5, thickness=0.0))
+    tinted = scene.add_material(materials.glass("Tinted pane", 1.5, colour=(0.55, 0.8, 0.6), thickness=0.0))
+    tall = (0.0, high[0] - low[0], 0.0)
+    for name, z, pane in (("Left pane", -0.1, clear), ("Right pane", 1.0, tinted)):
+        scene.add_object(name, grid((2.0, low[0], z), (0.0, 0.0, -1.1), tall), pane)
+    scene.add_object("Table", coffee_table(), wood, translation=(0.1, 0.0, -0.5))
+    scene.add_object("Chair", chair(), blue, translation=(-1.1, 0.0, -0.9), rotation=vec.quaternion(vec.Y, 50.0))
+    gold = scene.add_material(materials.metal("Gold", (1.0, 0.766, 0.336), 0.2))
+    knot = shapes.torus_knot(2, 3, 0.11, 0.05, 0.03, 160, 16)
+    scene.add_object("Gold knot", knot, gold, translation=(0.2, 0.50, -0.5))
+    scene.add_light("Sun", "directional", 14.0, (1.0, 0.95, 0.85), direction=(-0.72, -0.62, -0.12))
+    scene.add_camera("Camera", (-1.5, 1.45, 2.6), (0.6, 0.75, -0.7), 50.0)
+    return scene.glb()
+
+
 def many_lights():
     """A hall under 1,000 small square lamps of several colours, hung at random heights."""
     scene = Builder("many-lights")
@@ -234,5 +267,6 @@ SCENES = {
     "torchiere": torchiere,
     "colonnade": colonnade,
     "thin-furniture": thin_furniture,
+    "sunroom": sunroom,
     "many-lights": many_lights,
 }

@@ -139,6 +139,26 @@ Scene lightInFloor() {
   return b.scene;
 }
 
+/// A room open to the right, where a tinted pane may stand before the sun.
+Scene roomInTheSun(bool pane) {
+  constexpr float kTint = 0.4f;
+  SceneBuilder b;
+  const uint32_t grey = b.diffuse(glm::vec3(0.6f)), red = b.diffuse({0.6f, 0.2f, 0.2f});
+  b.quad(grey, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1});
+  b.quad(grey, {-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1});
+  b.quad(grey, {-1, 0, -1}, {1, 0, -1}, {1, 2, -1}, {-1, 2, -1});
+  b.quad(red, {-1, 0, 1}, {-1, 0, -1}, {-1, 2, -1}, {-1, 2, 1});
+  b.box(grey, {-0.6f, 0, -0.6f}, {0, 0.6f, 0});
+  Material glass;
+  glass.metallic = glass.roughness = 0;
+  glass.transmission = glass.ior = 1;
+  glass.baseColor = glm::vec4(glm::vec3(kTint), 1.0f);
+  if (pane) b.quad(b.material(glass), {1, 0, 1}, {1, 0, -1}, {1, 2, -1}, {1, 2, 1});
+  b.directionalLight({-1, -0.7f, 0}, glm::vec3(1.0f), pane ? 5.0f : 5.0f * kTint);
+  b.look({0, 1, 4.5}, {0, 1, 0}, 0.6f);
+  return b.scene;
+}
+
 TEST(BrokenSky, ValuesThatAreCleanedAreCounted) {
   TestSession session(brokenSky(true), smallPicture());
   session.ask(DescribeRequest{});
@@ -162,10 +182,13 @@ std::vector<HardCase> makeHardCases() {
       hardCase("grazing light", "A sun at a cosine of 1e-3", grazingLight, kAlbedo / kPi * 1000.0 * 1e-3),
       hardCase("grazing view", "Seen at a cosine of 1e-3", grazingView, kAlbedo / kPi * 2.0),
       hardCase("light in a surface", "Exactly in the plane of the floor",
-               lightInFloor, kAlbedo / kPi * 4.0 / std::pow(2.0, 1.5))};
+               lightInFloor, kAlbedo / kPi * 4.0 / std::pow(2.0, 1.5)),
+      hardCase("sun through a pane", "As a dimmer sun through an opening", [] { return roomInTheSun(true); })};
   cases[0].twinName = "point";
   cases[0].twin = [] { return tinyLight(false); };
   cases[0].rounding = 2e-3;  // the ball has 16 sides
+  cases[8].twinName = "opening";
+  cases[8].twin = [] { return roomInTheSun(false); };
   cases[4].twinName = "sky with zeros";
   cases[4].twin = [] { return brokenSky(false); };
   for (const size_t i : {1u, 3u, 7u}) cases[i].rounding = 1e-3;

@@ -70,6 +70,8 @@ std::vector<NeedCase> needCases() {
       {"alpha", with([](auto& e) { e.alphaMode = AlphaMode::blend, e.baseColor = glm::vec4(0.6f, 0.1f, 0.1f, 0.5f); }),
        with([](auto& e) { e.alphaMode = AlphaMode::opaque; })},
       {"transmission", with([](auto& e) { e.transmission = 1.0f; }), with([](auto& e) { e.transmission = 0.0f; })},
+      {"panes", with([](auto& e) { e.transmission = 1.0f, e.roughness = 0.0f; }),
+       with([](auto& e) { e.transmission = 0.0f, e.roughness = 1.0f; })},
       {"clearcoat", with([](auto& e) { e.clearcoat = 1.0f; }), with([](auto& e) { e.clearcoat = 0.0f; })},
       {"glossy", with([](auto& e) { e.specular = 1.0f; }), with([](auto& e) { e.specular = 0.0f; })},
       {"mirror", metal(1.0f, 0.0f), none},

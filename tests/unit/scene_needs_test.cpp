@@ -49,6 +49,9 @@ TEST(SceneNeeds, MaterialFeatures) {
   EXPECT_EQ(needsOf([](Material& m) { m.metallic = 1, m.roughness = 0; }), (Names{"glossy", "mirror", "sharp"}));
   EXPECT_EQ(needsOf([](Material& m) { m.transmission = 1; }), (Names{"transmission", "glossy", "sharp"}));
   EXPECT_EQ(needsOf([](Material& m) { m.transmission = 1, m.roughness = 0; }),
+            (Names{"transmission", "panes", "glossy", "mirror", "sharp"}));
+  EXPECT_EQ(needsOf([](Material& m) { m.transmission = 1, m.ior = 1; }), (Names{"transmission", "panes", "glossy", "sharp"}));
+  EXPECT_EQ(needsOf([](Material& m) { m.transmission = 1, m.roughness = 0, m.thickness = 1; }),
             (Names{"transmission", "glossy", "mirror", "sharp"}));
   EXPECT_EQ(needsOf([](Material& m) { m.clearcoat = 1, m.clearcoatRoughness = 0.5f; }), (Names{"clearcoat", "glossy", "sharp"}));
   EXPECT_EQ(needsOf([](Material& m) { m.clearcoat = 1; }), (Names{"clearcoat", "glossy", "mirror", "sharp"}));
