@@ -25,6 +25,9 @@ bool isGlossySource(const Material& m) {
   return std::min(r * r * tint, 1.0f) * m.specular >= shared::kLobeReflectance;
 }
 
+/// Of so many that a dispatch may take where a shadow ray is one ray.
+uint32_t samplesAtOnce(uint32_t most, bool panes) { return panes ? std::max(most / 4, 1u) : most; }
+
 bool isPunctual(const shared::LightData& light) { return light.type <= shared::kLightDirectional; }
 
 /// Lights that own a lobe each: the punctual ones, which head the table. Where others are left, one lobe is theirs.
@@ -134,6 +137,7 @@ std::vector<vk::Binding> PointLightCache::composeBindings(const PointLightContex
 
 Result<void> PointLightCache::prepare(const PointLightContext& context, const SceneNeeds& needs, bool mayCompile) {
   LIMN_CHECK(bool(light()));
+  m_panes = needs.panes;
   if (auto done = m_relight.prepare(context.device, relightBindings(context), needs, mayCompile); !done) return done;
   if (auto done = m_paths.prepare(context.device, relightBindings(context), needs, mayCompile); !done) return done;
   return m_compose.prepare(context.device, composeBindings(context), needs, mayCompile);
@@ -169,7 +173,7 @@ void PointLightCache::recordRelight(vk::CommandRecorder& recorder, const PointLi
   const uint32_t owners = m_lobesKept ? lobeLights(context.scene.lights()) : 0;
   const auto all = relightBindings(context);
   for (uint32_t done = 0; done < work.samples && slotCount > 0;) {
-    const uint32_t samples = std::min(work.samples - done, shared::kRelightSamplesMost);
+    const uint32_t samples = std::min(work.samples - done, samplesAtOnce(shared::kRelightSamplesMost, m_panes));
     const shared::RelightPush push{work.slots.first,
                                    slotCount,
                                    m_layout.clusterCount,
@@ -189,7 +193,7 @@ void PointLightCache::recordPaths(vk::CommandRecorder& recorder, const PointLigh
   const uint32_t slotCount = slotsOf(work.slots);
   const auto all = relightBindings(context);
   for (uint32_t done = 0; done < work.samples && slotCount > 0;) {
-    const uint32_t samples = std::min(work.samples - done, shared::kPathsMost);
+    const uint32_t samples = std::min(work.samples - done, samplesAtOnce(shared::kPathsMost, m_panes));
     const shared::TracePointsPush push{work.slots.first, slotCount, m_layout.clusterCount, m_layout.clusterSize,
                                        samples, work.samplesBefore + done, work.seed, work.bounces};
     m_paths->record(recorder, all, push, workgroups(2 * slotCount * m_layout.clusterCount));

@@ -125,6 +125,7 @@ class PointLightCache {
 
   PointLayout m_layout;
   bool m_lobesKept = false, m_refinedKept = false;
+  bool m_panes = false;  ///< shadow rays go on behind panes
   std::array<Buffers, 2> m_buffers;  ///< by PointLightVersion
   PointLightVersion m_selected = PointLightVersion::first;
   vk::Buffer m_counters;

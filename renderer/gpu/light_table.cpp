@@ -1,5 +1,6 @@
 #include "renderer/gpu/light_table.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -120,13 +121,18 @@ void addEmissiveBlock(Builder& b, const Scene& scene, const GeometryBlock& block
   }
 }
 
+/// Neither kind of light gets less: power tells how much of it arrives in all, not what arrives at a place; and a choice
+/// needs the digits that the one between tree and table leaves of its random number.
+constexpr double kLeastShare = 0.125;
+
 /// Moves the lights at a place from the alias table's care to a tree's.
 void plantTree(Builder& b) {
   if (b.placed.size() <= kFewLights) return;
   double placed = 0.0;
   for (const LightBounds& bounds : b.placed) placed += std::exchange(b.powers[bounds.light], 0.0);
   const double infinite = std::accumulate(b.powers.begin(), b.powers.end(), 0.0);
-  b.table.treeShare = float(placed / (placed + infinite));
+  const double share = placed / (placed + infinite);
+  b.table.treeShare = infinite > 0.0 ? float(std::clamp(share, kLeastShare, 1.0 - kLeastShare)) : 1.0f;
   b.table.tree = buildLightTree(b.placed);
   for (uint32_t node = 0; node < b.table.tree.size(); ++node)
     if (const uint32_t child = b.table.tree[node].child; child & shared::kLightLeaf)

@@ -11,7 +11,7 @@ namespace limn::gpu {
 struct LightTable {
   std::vector<shared::LightData> lights;
   std::vector<shared::LightNode> tree;    ///< empty where there are no more than kFewLights at a place
-  float treeShare = 0.0f;                 ///< chance that the tree chooses, by power; the rest is the alias table's
+  float treeShare = 0.0f;                 ///< chance that the tree chooses; the rest is the alias table's
   std::vector<uint32_t> lightOfTriangle;  ///< kNoIndex for triangles that do not shine; one a triangle of the scene
   uint32_t environmentLight = shared::kNoIndex;
 };

@@ -11,7 +11,8 @@ namespace limn::gpu {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kSlack = 1e-6;  // covers the rounding of the shader's floats
+// What the shader's floats round: lengths, and angles whose cosine is near 1 [rad].
+constexpr double kSlack = 1e-6, kAngleSlack = 5e-4;
 
 double angleBetween(const glm::dvec3& a, const glm::dvec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
@@ -59,7 +60,7 @@ shared::LightNode nodeOf(const LightBounds& b, uint32_t child, uint32_t parent) 
     node.radius = float(reach * (1.0 + kSlack));
   }
   node.axis = glm::vec3(b.axis);
-  node.cosOpening = b.opening >= kPi ? -1.0f : float(std::cos(b.opening + kSlack));
+  node.cosOpening = b.opening >= kPi ? -1.0f : float(std::cos(std::min(b.opening + kAngleSlack, kPi)));
   node.intensity = float(std::clamp(b.intensity, 1e-30, 1e30));
   node.cosEnd = b.cosEnd;
   node.child = child;

@@ -10,8 +10,7 @@ namespace limn::gpu {
 inline std::vector<uint32_t> needsConstants(const SceneNeeds& needs) {
   return {needs.textures,     needs.vertexColors,   needs.alpha,          needs.glossy || needs.mirror || needs.transmission,
           needs.transmission, needs.clearcoat,      needs.punctualLights, needs.emissiveTriangles,
-          needs.environment,  needs.environmentImage, needs.manyLights,
-          needs.panes};
+          needs.environment,  needs.environmentImage, needs.manyLights,     needs.panes};
 }
 
 /// Every need at once: the variant that renders anything.

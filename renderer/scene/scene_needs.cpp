@@ -33,7 +33,7 @@ bool mayBeMirror(const Material& m) {
   return (reflectsSpecularly(m) && smooth) || smoothCoat;
 }
 
-/// Within this of 1 an index of refraction bends nothing, makeBsdf() of the shaders.
+/// Within this of 1 an index of refraction bends nothing: kNoIndexChange of the shaders.
 constexpr float kNoIndexChange = 1e-3f;
 
 bool mayBePane(const Material& m) {

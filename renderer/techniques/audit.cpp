@@ -72,6 +72,7 @@ uint32_t auditEntries(uint32_t width, uint32_t height) {
 Result<void> Audit::prepare(const TechniqueContext& context, const SceneNeeds& needs, bool mayCompile) {
   if (m_width != context.film.width() || m_height != context.film.height() || m_seed != context.seed)
     if (auto made = makeBuffers(context); !made) return made;
+  m_needs = needs;
   if (auto done = m_trace.prepare(context.device, traceBindings(context), needs, mayCompile); !done) return done;
   if (m_compare) return {};
   const auto bindings = recordBindings(context);
@@ -186,7 +187,7 @@ Result<void> Audit::advance(const TechniqueContext& context, double seconds) {
                                      .byEntry = 1};
   const double begin = nowSeconds();
   auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
-    m_trace->record(r, traceBindings(context), push, pathTracingWorkgroups(m_piece.count));
+    recordPathTracing(r, *m_trace, traceBindings(context), push, m_needs);
   });
   if (!done) return done;
   const uint64_t paths = uint64_t(m_piece.count) * kSamplesAtOnce;

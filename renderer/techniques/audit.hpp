@@ -55,6 +55,7 @@ class Audit {
 
   gpu::TailoredPass m_trace{"path_tracing", sizeof(shared::PathTracingPush)};
   gpu::Pass m_compare;
+  SceneNeeds m_needs;
   std::optional<Film> m_film;     ///< a pixel is an entry of m_list
   vk::Buffer m_list, m_records, m_counters;
   uint32_t m_width = 0, m_height = 0, m_seed = 0;  ///< that m_list was made for

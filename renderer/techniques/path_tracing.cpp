@@ -150,7 +150,7 @@ Result<void> PathTracing::dispatch(const TechniqueContext& context, uint32_t cou
   const auto all = bindings(context, adaptive ? m_active : m_order);
   const double begin = nowSeconds();
   auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
-    m_trace->record(r, all, push, pathTracingWorkgroups(count));
+    recordPathTracing(r, *m_trace, all, push, m_needs);
   });
   if (!done) return done;
   const double seconds = nowSeconds() - begin;
@@ -223,9 +223,15 @@ const TechniqueInfo& pathTracingInfo() {
   return kInfo;
 }
 
-uint32_t pathTracingWorkgroups(uint32_t entries) {
-  const uint32_t turns = (entries + kWorkgroup * kDealt - 1) / (kWorkgroup * kDealt);
-  return turns * kDealt;
+void recordPathTracing(vk::CommandRecorder& recorder, const gpu::Pass& pass, const std::vector<vk::Binding>& bindings,
+                       shared::PathTracingPush push, const SceneNeeds& needs) {
+  const uint32_t turns = (push.entryCount + kWorkgroup * kDealt - 1) / (kWorkgroup * kDealt);
+  const uint32_t end = push.firstSample + push.sampleCount, most = needs.panes ? 2 : push.sampleCount;
+  for (; push.firstSample < end; push.firstSample += push.sampleCount) {
+    push.sampleCount = std::min(most, end - push.firstSample);
+    pass.record(recorder, bindings, push, turns * kDealt);
+    recorder.barrier();
+  }
 }
 
 std::unique_ptr<Technique> makePathTracing() { return std::make_unique<PathTracing>(); }

@@ -264,6 +264,8 @@ uint64_t PointProjectionTechnique::discardedSamples() const {
 std::vector<PassUse> PointProjectionTechnique::passes() const {
   const bool gathering = gathers();
   return {{"direct light", true},
+          {"light tree", m_needs.manyLights},
+          {"shadow rays through panes", m_needs.panes},
           {"surface points", m_points.count() > 0},
           {"point relighting", gathering},
           {"gathers", gathering},

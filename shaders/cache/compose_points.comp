@@ -33,6 +33,12 @@ float meanGgxAlbedo(float alpha) { return 1.0 / (1.0 + 1.43 * pow(alpha, 1.73));
 // Mean of Schlick's Fresnel term over the cosine-weighted hemisphere.
 vec3 meanSchlick(vec3 f0, float f90) { return f0 + (f90 - f0) * (1.0 / 21.0); }
 
+// The same of the exact Fresnel term, which is nothing where the index does not change; within 0.002 of the integral for
+// indices up to 1.8.
+vec3 meanFresnel(Surface s, vec3 f0, float f90) {
+  return f0 + (f90 - f0) * ((1.0 - exp(-5.4 * (s.ior - 1.0))) * (1.2 / 21.0));
+}
+
 Reflectances reflectancesOf(Surface s) {
   Bsdf f = makeBsdf(s, s.normal);
   float under = underClearcoat(f, s.clearcoatNormal);
@@ -40,7 +46,8 @@ Reflectances reflectancesOf(Surface s) {
   Reflectances r;
   r.diffuse = s.baseColor * (body * (1.0 - s.transmission));
   r.transmitted = kUseTransmission ? s.baseColor * (body * s.transmission) : vec3(0.0);
-  vec3 mean = mix(meanSchlick(f.dielectricF0, f.dielectricF90), meanSchlick(s.baseColor, 1.0), s.metallic);
+  vec3 dielectric = f.exactFresnel ? meanFresnel(s, f.dielectricF0, f.dielectricF90) : meanSchlick(f.dielectricF0, f.dielectricF90);
+  vec3 mean = mix(dielectric, meanSchlick(s.baseColor, 1.0), s.metallic);
   r.pane = kUsePanes && isPane(f);
   r.specular = kUseSpecular ? mean * (under * meanGgxAlbedo(s.alpha)) + (1.0 - under) : vec3(0.0);
   return r;

@@ -28,7 +28,7 @@ layout(push_constant, scalar) uniform Push { RelightPush push; };
 struct SideLight { vec3 front, back; };
 
 LightSample sampleFor(Surface s, uint index, float probability, float uAlias, vec2 u) {
-  if (index == kNoIndex) return LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0);
+  if (index == kNoIndex) return kNoLight;
   LightData light = lights[index];
   if (kUseTriangleLights && light.type == kLightTriangle) return sampleTriangleLightEvenly(light, probability, s.posR, u);
   return sampleChosenLight(light, probability, s.posR, uAlias, u);
@@ -70,7 +70,7 @@ void addTurn(uint point, Surface s, uint turn, inout SideLight sum, inout uint d
     arriving = vec3(0.0);
   }
   if (maxComponent(arriving) > 0.0)
-    arriving *= shareThatArrives(s, light, vec3(0.0), hashCombine(sampler_.key, sampler_.index));
+    arriving *= shareThatArrives(s, light, absorptionTowards(vec3(0.0), s, light), hashCombine(sampler_.key, sampler_.index));
 
   bool front = dot(s.geometricNormal, light.dirW) > 0.0;
   sum.front += !whole && front ? arriving : vec3(0.0);

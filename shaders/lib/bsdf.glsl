@@ -61,7 +61,8 @@ Bsdf makeBsdf(Surface s, vec3 woW) {
   f.dielectricF0 = min(r0 * s.specularColor, vec3(1.0)) * s.specular;
   f.dielectricF90 = s.specular;
   // Without a change of index nothing refracts: the half vector of a straight line does not exist.
-  if (f.exactFresnel && !f.thin && abs(s.ior - 1.0) < 1e-3) {
+  const float kNoIndexChange = 1e-3;
+  if (f.exactFresnel && !f.thin && abs(s.ior - 1.0) < kNoIndexChange) {
     f.s.alpha = 0.0;
     f.eta = 1.0;
   }
@@ -166,6 +167,9 @@ vec3 evaluateBsdf(Bsdf f, vec3 woW, vec3 wiW, out float pdf) {
 BsdfSample mirrorSample(Bsdf f, vec3 woW, vec3 dirW, vec3 weight, bool transmitted) {
   return BsdfSample(dirW, weight, 0.0, true, transmitted);
 }
+
+// Whether a sample went on straight behind a pane, where light sampling goes on, too.
+bool passesPane(Bsdf f, BsdfSample s) { return kUsePanes && s.mirror && s.transmitted && isPane(f); }
 
 const BsdfSample kNoSample = BsdfSample(vec3(0.0), vec3(0.0), 0.0, false, false);
 

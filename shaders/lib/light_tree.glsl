@@ -28,12 +28,12 @@ vec2 angleBeyond(vec2 a, vec2 b) {
 // In proportion to the most irradiance that a node's lights may bring together from where their centre is; 0 only where
 // none of them brings any. A light low above the surface keeps a tenth, for lobes that are not diffuse.
 float importanceOf(LightNode n, LightReceiver at) {
-  const float kLow = 0.1, kRounding = 1e-4, kLeast = 1e-37, kMost = 1e30;
+  const float kLow = 0.1, kRounding = 1e-3, kLeast = 1e-37, kMost = 1e30;
   vec3 way = n.centerR - at.posR;
   float d2 = dot(way, way), r2 = n.radius * n.radius;
   if (d2 <= r2) return clamp(n.intensity / max(r2, kLeast), kLeast, kMost);
   way *= inversesqrt(d2);
-  vec2 size = vec2(sqrt(1.0 - r2 / d2), sqrt(r2 / d2));  // half the angle that the node fills
+  vec2 size = vec2(sqrt(max(1.0 - r2 / d2, 0.0)), sqrt(r2 / d2));  // half the angle that the node fills
 
   float cosReceiver = dot(way, at.normal);
   float facing = angleBeyond(angleOf(at.both ? abs(cosReceiver) : cosReceiver), size).x;
@@ -54,8 +54,8 @@ uint chooseFromTree(LightReceiver at, vec2 u, out float probability) {
     float a = importanceOf(left, at), b = importanceOf(right, at);
     if (!(a + b > 0.0)) return kNoIndex;
     float share = a / (a + b);
-    bool isLeft = u.x < share;
-    u.x = isLeft ? u.x / share : min((u.x - share) / (1.0 - share), 0.99999994);
+    bool isLeft = u.x < share || !(b > 0.0);
+    u.x = min(isLeft ? u.x / share : (u.x - share) / (1.0 - share), 0.99999994);
     probability *= isLeft ? share : b / (a + b);
     uint child = isLeft ? left.child : right.child;
     if ((child & kLightLeaf) != 0u) return child & ~kLightLeaf;

@@ -12,6 +12,8 @@ struct LightSample {
   float pdf;       // per unit solid angle, with the choice of the light; 0 for delta lights
 };
 
+const LightSample kNoLight = LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0);
+
 LightReceiver receiverOf(Surface s) {
   return LightReceiver(s.posR, s.geometricNormal, kUseTransmission && s.transmission > 0.0);
 }
@@ -92,7 +94,7 @@ LightSample sampleTriangleLight(LightData light, float probability, vec3 p, vec2
   vec2 barycentrics = sampleTriangle(u);
   vec3 toLight = p0 + e1 * barycentrics.x + e2 * barycentrics.y - p;
   float d = length(toLight);
-  LightSample s = LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0);
+  LightSample s = kNoLight;
   if (!(d > 0.0)) return s;
   s.dirW = toLight / d;
   float scale = max(maxComponent(abs(e1)), maxComponent(abs(e2)));
@@ -106,7 +108,7 @@ LightSample sampleTriangleLight(LightData light, float probability, vec3 p, vec2
 
 // A light that was chosen with `probability`; `uAlias` is what the choice left of its second number.
 LightSample sampleChosenLight(LightData light, float probability, vec3 p, float uAlias, vec2 u) {
-  LightSample s = LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0);
+  LightSample s = kNoLight;
   if (kUseTriangleLights && light.type == kLightTriangle) return sampleTriangleLight(light, probability, p, u);
   if (kUseEnvironment && light.type == kLightEnvironment) {
     s.dirW = sampleEnvironment(u, uAlias, s.pdf);
@@ -134,10 +136,10 @@ LightSample sampleChosenLight(LightData light, float probability, vec3 p, float 
 }
 
 LightSample sampleLight(LightReceiver at, vec2 choice, vec2 u) {
-  if (sceneInfo.lightCount == 0u) return LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0);
+  if (sceneInfo.lightCount == 0u) return kNoLight;
   float probability;
   uint index = chooseLight(at, choice, probability);
-  if (kUseLightTree && index == kNoIndex) return LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0);
+  if (kUseLightTree && index == kNoIndex) return kNoLight;
   return sampleChosenLight(lights[index], probability, at.posR, choice.y, u);
 }
 

@@ -74,7 +74,7 @@ void addLights(inout Path p, Bsdf bsdf, vec3 woW) {
   vec3 value = evaluateBsdf(bsdf, woW, light.dirW, bsdfPdf);
   if (!(maxComponent(value) > 0.0)) return;
   uint alphaState = hashCombine(p.sampler_.key, p.sampler_.index ^ (p.bounce << 24));
-  vec3 share = shareThatArrives(bsdf.s, light, absorptionTowards(p.absorption, bsdf, light), alphaState);
+  vec3 share = shareThatArrives(bsdf.s, light, absorptionTowards(p.absorption, bsdf.s, light), alphaState);
   float weight = light.pdf > 0.0 ? powerHeuristic(light.pdf, bsdfPdf) : 1.0;
   addRadiance(p, p.throughput * value * light.radiance * share * weight, p.bounce + 1u);
 }
@@ -112,8 +112,7 @@ bool advance(inout Path p) {
   if (!(maxComponent(next.weight) > 0.0)) return false;
 
   p.throughput *= next.weight;
-  bool passes = kUsePanes && next.mirror && next.transmitted && isPane(bsdf);
-  if (passes) {  // light sampling goes on behind it, too
+  if (passesPane(bsdf, next)) {
     p.travelled += hit.t;
   } else {
     if (ends) return false;

@@ -8,14 +8,14 @@
 uint traceCount = 0u;
 
 // [1/m] Of the medium between a surface and a light; `absorption` is that on the viewer's side.
-vec3 absorptionTowards(vec3 absorption, Bsdf f, LightSample light) {
+vec3 absorptionTowards(vec3 absorption, Surface s, LightSample light) {
   if (!kUseTransmission) return vec3(0.0);
-  bool sameSide = f.thin || dot(f.s.geometricNormal, light.dirW) > 0.0;
-  return sameSide ? absorption : f.s.frontFace ? materials[f.s.material].absorption : vec3(0.0);
+  bool sameSide = (s.flags & kMaterialThin) != 0u || dot(s.geometricNormal, light.dirW) > 0.0;
+  return sameSide ? absorption : s.frontFace ? materials[s.material].absorption : vec3(0.0);
 }
 
-// The share that passes a surface hit on the way to a light, and the medium behind it; 0 unless it is a pane.
-vec3 shareBehind(Hit hit, vec3 dirW, inout vec3 absorption, out vec3 nextOrigin) {
+// The share of light that passes a surface hit on the way to it, and the medium behind; 0 unless it is a pane.
+vec3 shareThatPasses(Hit hit, vec3 dirW, inout vec3 absorption, out vec3 nextOrigin) {
   Surface s = makeSurface(hit.triangle, hit.barycentrics, -dirW);
   Bsdf f = makeBsdf(s, -dirW);
   nextOrigin = offsetOrigin(s.posR, s.geometricNormal, dirW, s.extent);
@@ -24,10 +24,10 @@ vec3 shareBehind(Hit hit, vec3 dirW, inout vec3 absorption, out vec3 nextOrigin)
   return paneTransmittance(f, -dirW);
 }
 
-// Of a light's sample, what arrives at the surface through panes and media; `absorption` [1/m] is that of the first.
+// Of a light's sample, what arrives at the surface through panes and media; `absorption` [1/m] is that of the medium where
+// the ray starts.
 // The ray aims at the light's point from where it starts: a parallel one would meet a near emitter before its end.
 vec3 shareThatArrives(Surface s, LightSample light, vec3 absorption, uint alphaState) {
-  const uint kMostPanes = 64u;
   bool near = light.distance < kInfinity;
   vec3 origin = offsetOrigin(s.posR, s.geometricNormal, light.dirW, s.extent);
   vec3 way = near ? s.posR - origin + light.dirW * light.distance : light.dirW;
@@ -43,7 +43,7 @@ vec3 shareThatArrives(Surface s, LightSample light, vec3 absorption, uint alphaS
     float perUnit = length(way);
     ++traceCount;
     if (!traceClosest(origin, way, end, alphaState, hit)) return share * exp(-before * (near ? perUnit : kInfinity));
-    share *= shareBehind(hit, light.dirW, absorption, nextOrigin) * exp(-before * (hit.t * perUnit));
+    share *= shareThatPasses(hit, light.dirW, absorption, nextOrigin) * exp(-before * (hit.t * perUnit));
     if (!(maxComponent(share) > 0.0)) return vec3(0.0);
     if (near) way -= nextOrigin - origin;
     origin = nextOrigin;

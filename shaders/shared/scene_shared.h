@@ -9,6 +9,8 @@ namespace limn::shared {
 LIMN_CONST_UINT(kNoIndex, 0xffffffffu);
 LIMN_CONST_FLOAT(kMinAlpha, 1e-4f);          // GGX alpha at and below which a lobe is a perfect mirror
 
+LIMN_CONST_UINT(kMostPanes, 16u);            // that a shadow ray passes
+
 // TextureSlot.sampler
 LIMN_CONST_UINT(kSamplerWrapMask, 3u);       // wrapS in bits 0-1, wrapT in bits 2-3: 0 repeat, 1 clamp, 2 mirror
 LIMN_CONST_UINT(kSamplerNearest, 1u << 4);
@@ -97,8 +99,8 @@ struct LightData {
 LIMN_ASSERT_SIZE(LightData, 76);
 
 LIMN_CONST_UINT(kLightLeaf, 1u << 31);     // of LightNode.child
-LIMN_CONST_FLOAT(kTwoSidedEnd, 0.0f);      // LightNode.cosEnd of emitters that shine by the cosine, from both faces
-LIMN_CONST_FLOAT(kSpotEnd, 0.999f);        // of spots: nothing outside the cone, but for what rounding needs
+LIMN_CONST_FLOAT(kTwoSidedEnd, 0.0f);      // of emitters that shine by the cosine, from both faces, and points
+LIMN_CONST_FLOAT(kSpotEnd, 0.999f);        // of spots: nothing outside the cone but what rounding needs
 
 // Lights of one branch of the light tree, bounded in place and direction. Siblings follow each other, and nodes 0 and 1
 // are the roots. [Conty Estevez and Kulla 2018]
@@ -108,7 +110,7 @@ struct LightNode {
   vec3 axis;          // unit, of a cone that holds the ways their emission is strongest
   float cosOpening;   // of half the cone's angle; -1: any way
   float intensity;    // [W/sr] of all together, each the way it is strongest; luminance
-  float cosEnd;       // of the angle off the cone beyond which nothing is sent
+  float cosEnd;       // of the angle off the cone beyond which nothing is sent: kTwoSidedEnd or kSpotEnd
   uint child;         // first of two; or kLightLeaf and the light's index
   uint parent;        // kNoIndex for the roots
 };

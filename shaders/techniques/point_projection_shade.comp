@@ -35,6 +35,7 @@ struct Walk {
   LightReceiver from; // whom lights were chosen for where the ray last scattered
   float travelled;    // [m] from there to originR, through panes
   uint depth;         // surfaces met before
+  uint scatterings;   // of which were no panes that the ray passed
   FilmSample result;  // all light that no gather brought
   vec3 gathered;
 };
@@ -50,7 +51,7 @@ Walk startWalk(uint pixel) {
   w.lobePdf = 0.0;
   w.from = LightReceiver(vec3(0.0), vec3(0.0), false);
   w.travelled = 0.0;
-  w.depth = 0u;
+  w.depth = w.scatterings = 0u;
   w.result = FilmSample(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0);
   w.gathered = vec3(0.0);
   return w;
@@ -66,7 +67,7 @@ void addEnvironment(inout Walk w) {
   float weight = 1.0;
   if (w.lobePdf > 0.0)
     weight = powerHeuristic(w.lobePdf, lights[sceneInfo.environmentLight].probability * environmentPdf(w.dirR));
-  addRadiance(w, w.throughput * environmentRadiance(w.dirR) * weight, w.depth);
+  addRadiance(w, w.throughput * environmentRadiance(w.dirR) * weight, w.scatterings);
 }
 
 void addEmission(inout Walk w, Surface s, Hit hit) {
@@ -76,7 +77,7 @@ void addEmission(inout Walk w, Surface s, Hit hit) {
     float probability = lightProbability(lights[index], w.from), cosLight = abs(dot(s.geometricNormal, w.dirR));
     weight = powerHeuristic(w.lobePdf, triangleLightPdf(lights[index], probability, w.travelled + hit.t, cosLight));
   }
-  addRadiance(w, w.throughput * s.emission * weight, w.depth);
+  addRadiance(w, w.throughput * s.emission * weight, w.scatterings);
 }
 
 uint alphaKey(Walk w, uint salt) { return hashCombine(w.sampler_.key ^ salt, w.sampler_.index ^ (w.depth << 24)); }
@@ -93,8 +94,8 @@ void addLights(inout Walk w, Bsdf rough, Bsdf sharp, vec3 woW) {
     value += narrow * (light.pdf > 0.0 ? powerHeuristic(light.pdf, pdf) : 1.0);
   }
   if (!(maxComponent(value) > 0.0)) return;
-  vec3 share = shareThatArrives(rough.s, light, absorptionTowards(w.absorption, rough, light), alphaKey(w, 0u));
-  addRadiance(w, w.throughput * value * light.radiance * share, w.depth + 1u);
+  vec3 share = shareThatArrives(rough.s, light, absorptionTowards(w.absorption, rough.s, light), alphaKey(w, 0u));
+  addRadiance(w, w.throughput * value * light.radiance * share, w.scatterings + 1u);
 }
 
 // At the first surface the pixels around know more; behind a mirror the points do.
@@ -118,12 +119,13 @@ bool followSharpLobe(inout Walk w, Bsdf bsdf, Bsdf sharp, vec3 woW, float t) {
   BsdfSample next = sampleBsdf(sharp, woW, lobe.x, u);
   if (!(maxComponent(next.weight) > 0.0)) return false;
   w.throughput *= next.weight;
-  if (kUsePanes && next.mirror && next.transmitted && isPane(sharp)) {  // light sampling goes on behind it, too
+  if (passesPane(sharp, next)) {
     w.travelled += t;
   } else {
     w.lobePdf = next.mirror ? 0.0 : next.pdf;
     w.from = receiverOf(bsdf.s);
     w.travelled = 0.0;
+    ++w.scatterings;
   }
   if (kUseTransmission && next.transmitted && !bsdf.thin)
     w.absorption = bsdf.s.frontFace ? materials[bsdf.s.material].absorption : vec3(0.0);
@@ -134,7 +136,8 @@ bool followSharpLobe(inout Walk w, Bsdf bsdf, Bsdf sharp, vec3 woW, float t) {
     if (lobe.y >= survive) return false;
     w.throughput /= survive;
   }
-  return ++w.depth <= kLongestChain;
+  ++w.depth;
+  return w.scatterings <= kLongestChain && w.depth <= kLongestChain + kMostPanes;
 }
 
 // Follows the walk to its next surface. False when it ended there.
@@ -156,7 +159,7 @@ bool advance(inout Walk w) {
     w.result.hit = 1.0;
   }
   if ((s.flags & kMaterialUnlit) != 0u) {
-    addRadiance(w, w.throughput * s.baseColor, w.depth);
+    addRadiance(w, w.throughput * s.baseColor, w.scatterings);
     return false;
   }
   if (kUseTriangleLights && (s.flags & kMaterialEmissive) != 0u) addEmission(w, s, hit);

@@ -7,13 +7,6 @@ namespace {
 constexpr double kAlbedo = 0.5, kPaneHeight = 0.7;
 const glm::vec3 kTint(0.8f, 0.8f, 0.8f);
 
-/// Share of unpolarised light that a surface of this index reflects at a cosine. [Fresnel]
-double fresnel(double cosine, double ior) {
-  const double t = std::sqrt(1 - (1 - cosine * cosine) / (ior * ior));
-  const double s = (cosine - ior * t) / (cosine + ior * t), p = (ior * cosine - t) / (ior * cosine + t);
-  return 0.5 * (s * s + p * p);
-}
-
 Material pane(float ior, float thickness) {
   Material m;
   m.metallic = 0;
@@ -93,6 +86,33 @@ TEST(Pane, MediaDimWhatPassesThem) {
   b.directionalLight({0.6f, -0.8f, 0}, glm::vec3(1.0f), 2.0f);
   lookParallel(b, {0.1, 0.5, 0.05}, {0, 0, 0}, 1e-3f);
   expectMean(render(b, straight()), kAlbedo / kPi * 2.0 * 0.8 * std::exp(-kSigma * kThickness / 0.8), 2e-3);
+}
+
+/// Its own rays and light sampling share the lamp, at the last bounce too.
+TEST(Pane, ARoughMetalReflectsALampBehindAPane) {
+  constexpr float kRoughness = 0.5f;
+  const auto room = [](bool covered) {
+    SceneBuilder b;
+    floorOf(b, b.metal(glm::vec3(1.0f), kRoughness), 6);
+    if (covered) b.quad(b.material(pane(1.0f, 0)), {-9, 0.7f, 9}, {9, 0.7f, 9}, {9, 0.7f, -9}, {-9, 0.7f, -9});
+    b.quad(b.emitter(glm::vec3(covered ? 3.0f : 3.0f * kTint.g)), {-1, 1, 1}, {1, 1, 1}, {1, 1, -1}, {-1, 1, -1});
+    lookParallel(b, {0.5, 0.5, 0.05}, {0, 0, 0}, 1e-3f);
+    return b;
+  };
+  for (const uint32_t bounces : {0u, 1u, 4u}) {
+    RenderOptions options = straight();
+    options.maxBounces = bounces;
+    expectMean(render(room(true), options), measure(render(room(false), options)).mean, 5e-3);
+  }
+}
+
+TEST(Pane, APaneMayBePartOfASurface) {
+  SceneBuilder b = underPanes(0);
+  Material half = pane(1.0f, 0);
+  half.transmission = 0.5f;
+  b.quad(b.material(half), {-9, 1, 9}, {9, 1, 9}, {9, 1, -9}, {-9, 1, -9});
+  b.pointLight({0, 2, 0}, glm::vec3(1.0f), 8.0f);
+  expectMean(render(b, straight()), kAlbedo / kPi * 8.0 / 4.0 * 0.5 * kTint.g, 2e-3);
 }
 
 TEST(Pane, GlassThatBendsLightHidesALamp) {

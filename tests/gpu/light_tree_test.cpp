@@ -42,30 +42,30 @@ void addTriangle(SceneBuilder& b, uint32_t material, Randoms& random) {
   b.mesh(p);
 }
 
-/// A floor under `points`, `spots` and `triangles` of random strength, and light from far away if asked.
-SceneBuilder hall(int points, int spots, int triangles, bool farLights) {
+/// A floor under `points`, `spots` and `triangles` of random strength, and a sun of that irradiance in a fifth as bright a sky.
+SceneBuilder hall(int points, int spots, int triangles, float sun) {
   SceneBuilder b;
   Randoms random;
   floorOf(b, b.diffuse(glm::vec3(0.5f)), 6);
   for (int i = 0; i < points; ++i) b.pointLight(random.place(), glm::vec3(1.0f), std::exp2(random(-6, 6)));
   for (int i = 0; i < spots; ++i)
     b.spotLight(random.place(), random.direction(), std::exp2(random(-6, 6)), random(0, 0.2f), random(0.3f, 1.5f));
-  if (farLights) b.directionalLight({0.3f, -1, 0.2f}, glm::vec3(1.0f), 1.0f);
+  if (sun > 0.0f) b.directionalLight({0.3f, -1, 0.2f}, glm::vec3(1.0f), sun);
   for (int i = 0; i < triangles; ++i) addTriangle(b, b.emitter(glm::vec3(std::exp2(random(-3, 3)))), random);
-  if (farLights) b.scene.environment.radiance = glm::vec3(0.2f);
+  b.scene.environment.radiance = glm::vec3(0.2f * sun);
   return b;
 }
 
 struct HallCase {
   const char* name;
   int points, spots, triangles;
-  bool farLights;
+  float sun;  // [W/m²]
 };
 void PrintTo(const HallCase& c, std::ostream* out) { *out << c.name; }
 
 class LightTree : public testing::TestWithParam<HallCase> {
  protected:
-  LightTree() : m_hall(hall(GetParam().points, GetParam().spots, GetParam().triangles, GetParam().farLights)) {
+  LightTree() : m_hall(hall(GetParam().points, GetParam().spots, GetParam().triangles, GetParam().sun)) {
     ChangeSet everything;
     everything.everything = true;
     must(m_mirror.sync(m_hall.scene, everything));
@@ -83,9 +83,9 @@ class LightTree : public testing::TestWithParam<HallCase> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Halls, LightTree,
-                         testing::Values(HallCase{"Points", 300, 0, 0, false}, HallCase{"Spots", 0, 120, 0, false},
-                                         HallCase{"Triangles", 0, 0, 200, false},
-                                         HallCase{"Everything", 40, 40, 40, true}),
+                         testing::Values(HallCase{"Points", 300, 0, 0, 0.0f}, HallCase{"Spots", 0, 120, 0, 0.0f},
+                                         HallCase{"Triangles", 0, 0, 200, 0.0f}, HallCase{"Everything", 40, 40, 40, 1.0f},
+                                         HallCase{"StrongSun", 300, 0, 0, 1e8f}, HallCase{"WeakSun", 300, 0, 0, 1e-8f}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 /// On the floor, among the lights, on a wall that sees half of them, far away, and with two sides.
@@ -121,7 +121,7 @@ TEST_P(LightTree, LightsAreChosenAsOftenAsIsSaid) {
   }
 }
 
-/// The way to the middle of a light from the receiver [m], and the unit normal of a triangle.
+/// The way to a light from the receiver [m], and the unit normal of a triangle.
 struct Way {
   glm::dvec3 toLight, normal{0.0};
 };
@@ -133,12 +133,13 @@ const gpu::GeometryBlock& blockOf(const gpu::DeviceScene& mirror, uint32_t trian
   });
 }
 
-Way wayTo(const gpu::DeviceScene& mirror, const shared::LightData& light, const glm::vec3& from) {
+/// `weights` are those of a triangle's corners.
+Way wayTo(const gpu::DeviceScene& mirror, const shared::LightData& light, const glm::vec3& from, const glm::dvec3& weights) {
   if (light.type != shared::kLightTriangle) return {glm::dvec3(light.posR) - glm::dvec3(from)};
   const gpu::GeometryBlock& block = blockOf(mirror, light.triangle);
   const glm::vec3* corner = &block.corners[size_t(light.triangle - block.firstTriangle) * 3];
   const glm::dvec3 a(corner[0]), b(corner[1]), c(corner[2]);
-  return {(a + b + c) / 3.0 - glm::dvec3(from), glm::normalize(glm::cross(b - a, c - a))};
+  return {a * weights.x + b * weights.y + c * weights.z - glm::dvec3(from), glm::normalize(glm::cross(b - a, c - a))};
 }
 
 /// [W/sr] Where a light is strongest.
@@ -148,8 +149,9 @@ double intensity(const Scene& scene, const gpu::DeviceScene& mirror, const share
 }
 
 /// Of the intensity, towards the receiver and onto it.
-double shareThatArrives(const gpu::DeviceScene& mirror, const shared::LightData& light, const shared::LightTreePush& at) {
-  const Way way = wayTo(mirror, light, at.posR);
+double shareThatArrives(const gpu::DeviceScene& mirror, const shared::LightData& light, const shared::LightTreePush& at,
+                        const glm::dvec3& weights = glm::dvec3(1.0 / 3.0)) {
+  const Way way = wayTo(mirror, light, at.posR, weights);
   const glm::dvec3 dir = glm::normalize(way.toLight);
   double sent = 1.0;
   if (light.type == shared::kLightTriangle) sent = std::abs(glm::dot(way.normal, dir));
@@ -166,9 +168,10 @@ TEST_P(LightTree, NoLightThatBringsAnythingIsLeftOut) {
     SCOPED_TRACE(receiver.posR.x);
     const auto told = run(receiver, shared::kTreeProbability, uint32_t(lights().size()));
     for (size_t i = 0; i < lights().size(); ++i)
-      if (lights()[i].node != shared::kNoIndex && shareThatArrives(m_mirror, lights()[i], receiver) > 0.0) {
-        ASSERT_GT(told[i].probability, 0.0f) << i;
-      }
+      for (const glm::dvec3 corner : {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)})
+        if (lights()[i].node != shared::kNoIndex && shareThatArrives(m_mirror, lights()[i], receiver, corner) > 0.0) {
+          ASSERT_GT(told[i].probability, 0.0f) << i;
+        }
   }
 }
 
@@ -205,7 +208,7 @@ TEST_P(LightTree, NearAndStrongLightsAreChosenMoreOften) {
 
 TEST(LightTreeOfFew, IsNotPlanted) {
   for (const int count : {int(kFewLights), int(kFewLights) + 1}) {
-    const SceneBuilder b = hall(count, 0, 0, true);
+    const SceneBuilder b = hall(count, 0, 0, 1.0f);
     EXPECT_EQ(sceneNeeds(b.scene).manyLights, count > int(kFewLights));
     gpu::DeviceScene mirror(SharedDevice::get());
     ChangeSet everything;

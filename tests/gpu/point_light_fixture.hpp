@@ -1,7 +1,6 @@
 #pragma once
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <vector>
 
 #include "renderer/cache/point_light.hpp"
@@ -9,11 +8,10 @@
 #include "shaders/shared/point_shared.h"
 #include "shaders/shared/relight_shared.h"
 #include "tests/gpu/kernel.hpp"
+#include "tests/support/closed_form.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace limn::test {
-
-constexpr double kPi = std::numbers::pi;
 
 /// Points on a square mesh of two triangles (a, b, c), (a, c, d), in rows over the whole of it.
 struct SquarePoints {

@@ -68,6 +68,17 @@ TEST(PointRadiance, PlainDielectricsLoseNoEnergyToTheirSpecularLayer) {
   expectNear(front, (0.5f * 0.96f + specular) * kFront, 0.0f, 2e-3f);
 }
 
+TEST(PointRadiance, GlassReflectsFresnelsMean) {
+  for (const float ior : {1.0f, 1.02f, 1.1f, 1.33f, 1.5f, 1.8f}) {
+    Material m = lambert(glm::vec3(0.0f));
+    m.transmission = m.specular = m.thickness = 1.0f;
+    m.roughness = 0.0f;
+    m.ior = ior;
+    const double mean = quadrature(1000, [&](double u, double) { return fresnel(std::sqrt(u), ior); });
+    expectNear(composed(m, kArriving).first, kFront * float(mean), 0.0f, 0.002f * kFront.b);
+  }
+}
+
 TEST(PointRadiance, UnlitSurfacesShowTheirColour) {
   Material m = lambert({0.2f, 0.9f, 0.4f});
   m.unlit = true;
@@ -94,6 +105,17 @@ TEST(PointRadiance, WhatPassesThroughLeavesOnTheOtherSide) {
   expectNear(back, glm::vec3(m.baseColor) * (0.25f * kBack + 0.75f * kFront), 0.0f);
 }
 
+/// The points behind have it already, by shadow rays.
+TEST(PointRadiance, DirectLightThatPassesAPaneIsNotSentOnAgain) {
+  for (const float roughness : {0.0f, 0.5f}) {
+    Material m = lambert({0.5f, 0.4f, 0.3f});
+    m.transmission = 0.75f;
+    m.roughness = roughness;
+    const glm::vec3 through = roughness == 0.0f ? kArriving.indirectBack : kBack;
+    expectNear(composed(m, kArriving).first, glm::vec3(m.baseColor) * (0.25f * kFront + 0.75f * through), 0.0f);
+  }
+}
+
 TEST(PointRadiance, NoMaterialSendsOutMoreThanArrives) {
   const shared::PointLight furnace{glm::vec3(0.5f), glm::vec3(0.5f), glm::vec3(0.5f), glm::vec3(0.5f)};
   for (const float roughness : {0.0f, 0.2f, 0.5f, 1.0f})
@@ -104,6 +126,7 @@ TEST(PointRadiance, NoMaterialSendsOutMoreThanArrives) {
         m.roughness = roughness;
         m.transmission = transmission;
         m.clearcoat = clearcoat;
+        m.thickness = 1.0f;  // no pane
         const glm::vec4 out = composed(m, furnace).first;
         EXPECT_LT(out.r, 1.06f) << roughness << " " << transmission << " " << clearcoat;
         EXPECT_GT(out.r, 0.9f) << roughness << " " << transmission << " " << clearcoat;

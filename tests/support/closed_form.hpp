@@ -30,6 +30,13 @@ inline double quadrature(int n, const std::function<double(double, double)>& f) 
   return sum / (double(n) * n);
 }
 
+/// Share of unpolarised light that a smooth surface of index `ior` reflects at a cosine. [Fresnel]
+inline double fresnel(double cosine, double ior) {
+  const double t = std::sqrt(1 - (1 - cosine * cosine) / (ior * ior));
+  const double s = (cosine - ior * t) / (cosine + ior * t), p = (ior * cosine - t) / (ior * cosine + t);
+  return 0.5 * (s * s + p * p);
+}
+
 /// GGX with height-correlated Smith shadowing in double precision, written from [Heitz 2014].
 struct Ggx {
   double alpha;

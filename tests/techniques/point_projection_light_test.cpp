@@ -92,6 +92,20 @@ TEST(PointProjectionLight, Mirror) { expectAlike(differenceOf(withSphere(flushLa
 
 TEST(PointProjectionLight, Glass) { expectAlike(differenceOf(withSphere(flushLamp(), 0.0f, 0.0f, 1.0f), 8, 16), 0.03, 0.02); }
 
+// Direct light is what passed nothing but panes, for either technique; gathers see a pane as a surface that glows. They
+// reflect nothing: paths do not find a point light in a mirror. Both end where one bounce more no longer matters.
+TEST(PointProjectionLight, PanesBeforeTheLampAndBeforeTheEye) {
+  SceneBuilder b = withPointLight();
+  Material tinted;
+  tinted.metallic = tinted.roughness = 0.0f;
+  tinted.transmission = tinted.ior = 1.0f;
+  tinted.baseColor = {0.5f, 0.8f, 0.6f, 1.0f};
+  const uint32_t pane = b.material(tinted);
+  b.quad(pane, {-0.5f, 0.4f, 0.7f}, {0.6f, 0.4f, 0.7f}, {0.6f, 0.4f, -0.4f}, {-0.5f, 0.4f, -0.4f});
+  b.quad(pane, {-0.9f, -0.9f, 0.9f}, {0.9f, -0.9f, 0.9f}, {0.9f, 0.2f, 0.9f}, {-0.9f, 0.2f, 0.9f});
+  expectAlike(differenceOf(b.scene, 8, 12), 0.01, 0.03);
+}
+
 TEST(PointProjectionLight, TheFilterBlursByPixelsWhatNoEdgeTellsApart) {
   const Difference d = differenceOf(withPointLight().scene, 1, 1, {});
   EXPECT_LT(d.indirect, 0.35);

@@ -51,6 +51,10 @@ TEST(SceneNeeds, MaterialFeatures) {
   EXPECT_EQ(needsOf([](Material& m) { m.transmission = 1, m.roughness = 0; }),
             (Names{"transmission", "panes", "glossy", "mirror", "sharp"}));
   EXPECT_EQ(needsOf([](Material& m) { m.transmission = 1, m.ior = 1; }), (Names{"transmission", "panes", "glossy", "sharp"}));
+  EXPECT_EQ(needsOf([](Material& m) { m.transmission = 1, m.ior = 0.9995f, m.thickness = 1; }),
+            (Names{"transmission", "panes", "glossy", "sharp"}));
+  EXPECT_EQ(needsOf([](Material& m) { m.transmission = 1, m.metallicRoughnessTexture.image = 0; }),
+            (Names{"textures", "transmission", "panes", "glossy", "mirror", "sharp"}));
   EXPECT_EQ(needsOf([](Material& m) { m.transmission = 1, m.roughness = 0, m.thickness = 1; }),
             (Names{"transmission", "glossy", "mirror", "sharp"}));
   EXPECT_EQ(needsOf([](Material& m) { m.clearcoat = 1, m.clearcoatRoughness = 0.5f; }), (Names{"clearcoat", "glossy", "sharp"}));
