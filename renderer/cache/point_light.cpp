@@ -137,7 +137,6 @@ std::vector<vk::Binding> PointLightCache::composeBindings(const PointLightContex
 
 Result<void> PointLightCache::prepare(const PointLightContext& context, const SceneNeeds& needs, bool mayCompile) {
   LIMN_CHECK(bool(light()));
-  m_panes = needs.panes;
   if (auto done = m_relight.prepare(context.device, relightBindings(context), needs, mayCompile); !done) return done;
   if (auto done = m_paths.prepare(context.device, relightBindings(context), needs, mayCompile); !done) return done;
   return m_compose.prepare(context.device, composeBindings(context), needs, mayCompile);
@@ -173,7 +172,7 @@ void PointLightCache::recordRelight(vk::CommandRecorder& recorder, const PointLi
   const uint32_t owners = m_lobesKept ? lobeLights(context.scene.lights()) : 0;
   const auto all = relightBindings(context);
   for (uint32_t done = 0; done < work.samples && slotCount > 0;) {
-    const uint32_t samples = std::min(work.samples - done, samplesAtOnce(shared::kRelightSamplesMost, m_panes));
+    const uint32_t samples = std::min(work.samples - done, samplesAtOnce(shared::kRelightSamplesMost, context.panes));
     const shared::RelightPush push{work.slots.first,
                                    slotCount,
                                    m_layout.clusterCount,
@@ -193,7 +192,7 @@ void PointLightCache::recordPaths(vk::CommandRecorder& recorder, const PointLigh
   const uint32_t slotCount = slotsOf(work.slots);
   const auto all = relightBindings(context);
   for (uint32_t done = 0; done < work.samples && slotCount > 0;) {
-    const uint32_t samples = std::min(work.samples - done, samplesAtOnce(shared::kPathsMost, m_panes));
+    const uint32_t samples = std::min(work.samples - done, samplesAtOnce(shared::kPathsMost, context.panes));
     const shared::TracePointsPush push{work.slots.first, slotCount, m_layout.clusterCount, m_layout.clusterSize,
                                        samples, work.samplesBefore + done, work.seed, work.bounces};
     m_paths->record(recorder, all, push, workgroups(2 * slotCount * m_layout.clusterCount));

@@ -20,6 +20,7 @@ struct PointLightContext {
   const gpu::DeviceScene& scene;
   const SceneTracer& tracer;
   std::vector<vk::Binding> points;  ///< of SurfacePoints: BINDING_POINTS and BINDING_POINT_SITES
+  bool panes = false;               ///< the scene has some, and a shadow ray may be many
 };
 
 /// Points are stored cluster by cluster: point = cluster * clusterSize + slot.
@@ -125,7 +126,6 @@ class PointLightCache {
 
   PointLayout m_layout;
   bool m_lobesKept = false, m_refinedKept = false;
-  bool m_panes = false;  ///< shadow rays go on behind panes
   std::array<Buffers, 2> m_buffers;  ///< by PointLightVersion
   PointLightVersion m_selected = PointLightVersion::first;
   vk::Buffer m_counters;

@@ -134,7 +134,7 @@ PointLayout PointProjectionTechnique::layoutOfPoints() const {
 }
 
 PointLightContext PointProjectionTechnique::lightContext(const TechniqueContext& context) const {
-  return {context.device, context.scene, context.tracer, m_points.bindings()};
+  return {context.device, context.scene, context.tracer, m_points.bindings(), m_panes};
 }
 
 std::vector<vk::Binding> PointProjectionTechnique::sceneBindings(const TechniqueContext& context, const vk::Buffer& list) const {
@@ -171,6 +171,7 @@ std::vector<vk::Binding> PointProjectionTechnique::shadeBindings(const Technique
 
 Result<void> PointProjectionTechnique::prepare(const TechniqueContext& context, const SceneNeeds& needs, bool mayCompile) {
   m_needs = needs;
+  m_panes = sceneNeeds(context.description).panes;
   if (auto done = makeBuffers(context); !done) return done;
   if (auto done = updatePoints(context); !done) return done;
   const bool sources = context.allNeeds || hasGlossySources(context.description);

@@ -120,6 +120,7 @@ class PointProjectionTechnique final : public Technique {
 
   PointProjectionSettings m_settings;
   SceneNeeds m_needs;
+  bool m_panes = false;  ///< in the scene itself, whatever is forced to be at work: it decides how sums are rounded
 
   SurfacePoints m_points;
   PointGrid m_pointGrid;    ///< of the points at which bounces are gathered

@@ -11,7 +11,7 @@ uint traceCount = 0u;
 vec3 absorptionTowards(vec3 absorption, Surface s, LightSample light) {
   if (!kUseTransmission) return vec3(0.0);
   bool sameSide = (s.flags & kMaterialThin) != 0u || dot(s.geometricNormal, light.dirW) > 0.0;
-  return sameSide ? absorption : s.frontFace ? materials[s.material].absorption : vec3(0.0);
+  return sameSide ? absorption : s.frontFace && s.transmission > 0.0 ? materials[s.material].absorption : vec3(0.0);
 }
 
 // The share of light that passes a surface hit on the way to it, and the medium behind; 0 unless it is a pane.
@@ -42,7 +42,8 @@ vec3 shareThatArrives(Surface s, LightSample light, vec3 absorption, uint alphaS
     vec3 before = absorption, nextOrigin;
     float perUnit = length(way);
     ++traceCount;
-    if (!traceClosest(origin, way, end, alphaState, hit)) return share * exp(-before * (near ? perUnit : kInfinity));
+    if (!traceClosest(origin, way, end, alphaState, hit))
+      return share * exp(-before * (near && panes > 0u ? perUnit : light.distance));
     share *= shareThatPasses(hit, light.dirW, absorption, nextOrigin) * exp(-before * (hit.t * perUnit));
     if (!(maxComponent(share) > 0.0)) return vec3(0.0);
     if (near) way -= nextOrigin - origin;
