@@ -74,12 +74,19 @@ def _wall_with_door(x, z0, z1, height, door_z, door_width, door_height):
     )
 
 
+def _living_room(scene):
+    """Materials of white walls, a varnished floor and a blue wall."""
+    return (
+        scene.add_material(materials.lambert("White", (0.75, 0.74, 0.70))),
+        scene.add_material(materials.glossy("Floor", (0.36, 0.22, 0.12), 0.4)),
+        scene.add_material(materials.lambert("Blue", (0.18, 0.28, 0.48))),
+    )
+
+
 def ajar_door():
     """A room whose only light comes through a door that stands ajar [after Veach 1997, 11.4]."""
     scene = Builder("ajar-door")
-    white = scene.add_material(materials.lambert("White", (0.75, 0.74, 0.70)))
-    wood = scene.add_material(materials.glossy("Floor", (0.36, 0.22, 0.12), 0.4))
-    blue = scene.add_material(materials.lambert("Blue", (0.18, 0.28, 0.48)))
+    white, wood, blue = _living_room(scene)
     room(scene, (-2.0, 0.0, -2.0), (2.0, 2.5, 3.0), (None, white, wood, white, white, blue))
     hinge, width, height, ajar = -1.1, 0.9, 2.05, vec.quaternion(vec.Y, 30.0)
     scene.add_object("Left wall", _wall_with_door(-2.0, -2.0, 3.0, 2.5, hinge, width, height), white)
@@ -213,9 +220,7 @@ def _wall_with_window(x, z0, z1, height, low, high):
 def sunroom():
     """A room whose only light is the sun behind the two panes of a window."""
     scene = Builder("sunroom")
-    white = scene.add_material(materials.lambert("White", (0.75, 0.74, 0.70)))
-    wood = scene.add_material(materials.glossy("Floor", (0.36, 0.22, 0.12), 0.4))
-    blue = scene.add_material(materials.lambert("Blue", (0.18, 0.28, 0.48)))
+    white, wood, blue = _living_room(scene)
     room(scene, (-2.0, 0.0, -2.0), (2.0, 2.5, 3.0), (white, None, wood, white, white, blue))
     low, high = (0.8, -1.2), (2.1, 1.0)
     scene.add_object("Right wall", _wall_with_window(2.0, -2.0, 3.0, 2.5, low, high), white)
