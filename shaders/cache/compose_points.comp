@@ -26,30 +26,29 @@ struct Reflectances {
   bool pane;         // direct light passes it straight, and the points behind it have it already
 };
 
-// Mean over the hemisphere of what single scattering by GGX microfacets keeps, all of them reflecting fully; within
-// 0.005 of the integral of ggx.glsl's functions.
-float meanGgxAlbedo(float alpha) { return 1.0 / (1.0 + 1.43 * pow(alpha, 1.73)); }
-
-// Mean of Schlick's Fresnel term over the cosine-weighted hemisphere.
-vec3 meanSchlick(vec3 f0, float f90) { return f0 + (f90 - f0) * (1.0 / 21.0); }
-
-// The same of the exact Fresnel term, which is nothing where the index does not change; within 0.002 of the integral for
-// indices up to 1.8.
+// Mean of the exact Fresnel term over the cosine-weighted hemisphere, which is nothing where the index does not change;
+// within 0.002 of the integral for indices up to 1.8.
 vec3 meanFresnel(Surface s, vec3 f0, float f90) {
   return f0 + (f90 - f0) * ((1.0 - exp(-5.4 * (s.ior - 1.0))) * (1.2 / 21.0));
 }
 
+// Mean of what microfacets reflect of light that arrives from everywhere.
+vec3 meanReflectance(Bsdf f) {
+  float albedo = meanGgxAlbedo(f.s.alpha), schlick = meanGgxSchlickAlbedo(f.s.alpha);
+  vec3 dielectric = f.exactFresnel ? meanFresnel(f.s, f.dielectricF0, f.dielectricF90) * albedo
+                                   : dielectricAlbedo(f, albedo, schlick);
+  return mix(dielectric, metalAlbedo(f, albedo, schlick), f.s.metallic);
+}
+
 Reflectances reflectancesOf(Surface s) {
   Bsdf f = makeBsdf(s, s.normal);
-  float under = underClearcoat(f, s.clearcoatNormal);
-  float body = max((1.0 - s.metallic) * (1.0 - maxComponent(dielectricFresnel(f, 1.0))) * under, 0.0);
+  float under = underClearcoat(f, s.clearcoatNormal), body = (1.0 - s.metallic) * under;
+  float entering = max(1.0 - maxComponent(dielectricFresnel(f, 1.0)), 0.0);
   Reflectances r;
-  r.diffuse = s.baseColor * (body * (1.0 - s.transmission));
-  r.transmitted = kUseTransmission ? s.baseColor * (body * s.transmission) : vec3(0.0);
-  vec3 dielectric = f.exactFresnel ? meanFresnel(s, f.dielectricF0, f.dielectricF90) : meanSchlick(f.dielectricF0, f.dielectricF90);
-  vec3 mean = mix(dielectric, meanSchlick(s.baseColor, 1.0), s.metallic);
+  r.diffuse = s.baseColor * (body * (1.0 - s.transmission) * (f.exactFresnel ? entering : meanThroughSpecular(f)));
+  r.transmitted = kUseTransmission ? s.baseColor * (body * s.transmission * entering) : vec3(0.0);
   r.pane = kUsePanes && isPane(f);
-  r.specular = kUseSpecular ? mean * (under * meanGgxAlbedo(s.alpha)) + (1.0 - under) : vec3(0.0);
+  r.specular = kUseSpecular ? meanReflectance(f) * under + (1.0 - under) : vec3(0.0);
   return r;
 }
 

@@ -3,6 +3,7 @@
 #ifndef LIMN_BSDF_GLSL
 #define LIMN_BSDF_GLSL
 #include "shaders/lib/ggx.glsl"
+#include "shaders/lib/ggx_albedo.glsl"
 #include "shaders/lib/sampling.glsl"
 #include "shaders/lib/surface.glsl"
 
@@ -26,6 +27,7 @@ struct Bsdf {
   bool exactFresnel;      // transmissive materials need total internal reflection; opaque ones follow glTF's Schlick
   bool thin;
   bool diffuse;           // false: the diffuse lobe is left to somebody else (lobe_split.glsl)
+  float underSpecular;    // what an opaque dielectric's specular layer leaves to the diffuse one, by the viewer's angle
   LobeShares shares;
   vec3 woL;               // the viewer in the frame
 };
@@ -42,6 +44,33 @@ vec3 reflectionFresnel(Bsdf f, float cosH) {
   return mix(dielectricFresnel(f, cosH), metalFresnel(f, cosH), f.s.metallic);
 }
 float clearcoatFresnel(float cosH) { return 0.04 + 0.96 * schlickWeight(cosH); }
+
+// What all microfacets reflect, by what they would reflect fully and by Schlick's weights (ggx_albedo.glsl).
+vec3 dielectricAlbedo(Bsdf f, float albedo, float schlickAlbedo) {
+  return f.dielectricF0 * albedo + (f.dielectricF90 - f.dielectricF0) * schlickAlbedo;
+}
+vec3 metalAlbedo(Bsdf f, float albedo, float schlickAlbedo) {
+  return f.s.baseColor * albedo + (1.0 - f.s.baseColor) * schlickAlbedo;
+}
+
+// What an opaque dielectric's specular layer lets through, in the channel where that is least; less by the error of the
+// fit, so that both layers together never send back more than arrives.
+float throughSpecular(Bsdf f, float albedo, float schlickAlbedo) {
+  const float kFitError = 0.004;
+  return max(1.0 - maxComponent(dielectricAlbedo(f, albedo, schlickAlbedo)) - kFitError * f.dielectricF90, 0.0);
+}
+float throughSpecular(Bsdf f, float cosTheta) {
+  return throughSpecular(f, ggxAlbedo(cosTheta, f.s.alpha), ggxSchlickAlbedo(cosTheta, f.s.alpha));
+}
+float meanThroughSpecular(Bsdf f) { return throughSpecular(f, meanGgxAlbedo(f.s.alpha), meanGgxSchlickAlbedo(f.s.alpha)); }
+
+// Albedo of a white diffuse layer under a dielectric's specular one where light comes in at `cosI`. It is reciprocal, and
+// what both layers reflect adds up to what arrives [Kelemen and Szirmay-Kalos 2001]; glTF's mix by Fresnel's factor of the
+// half vector adds up to 1.8 times that at grazing angles. Transmissive materials keep glTF's.
+float diffuseUnderSpecular(Bsdf f, float cosI, float cosH) {
+  if (f.exactFresnel) return 1.0 - maxComponent(dielectricFresnel(f, cosH));
+  return kUseSpecular ? f.underSpecular * throughSpecular(f, cosI) : 1.0;
+}
 
 // What the coat leaves to the layers below, seen from the viewer. [KHR_materials_clearcoat]
 float underClearcoat(Bsdf f, vec3 woW) {
@@ -68,8 +97,18 @@ Bsdf makeBsdf(Surface s, vec3 woW) {
   }
 
   float cosO = max(f.woL.z, 0.0);
-  float reflectance = kUseSpecular ? luminance(reflectionFresnel(f, cosO)) : 0.0;
-  float body = (1.0 - s.metallic) * (1.0 - maxComponent(dielectricFresnel(f, cosO)));
+  float reflectance = 0.0, body = (1.0 - s.metallic) * (1.0 - maxComponent(dielectricFresnel(f, cosO)));
+  f.underSpecular = 1.0;
+  if (kUseSpecular && f.exactFresnel) {
+    reflectance = luminance(reflectionFresnel(f, cosO));
+  } else if (kUseSpecular) {
+    float all = ggxAlbedo(cosO, s.alpha), schlick = ggxSchlickAlbedo(cosO, s.alpha);
+    reflectance = luminance(mix(dielectricAlbedo(f, all, schlick), metalAlbedo(f, all, schlick), s.metallic));
+    float through = throughSpecular(f, all, schlick);
+    const float kLeastMean = 0.05;  // a layer that reflects nearly all leaves a quotient of the fit's errors
+    f.underSpecular = through / max(meanThroughSpecular(f), kLeastMean);
+    body = (1.0 - s.metallic) * through;
+  }
   float albedo = luminance(s.baseColor);
   float coat = kUseClearcoat ? s.clearcoat * clearcoatFresnel(abs(dot(s.clearcoatNormal, woW))) : 0.0;
   LobeShares w;
@@ -125,7 +164,7 @@ vec3 evaluateBsdf(Bsdf f, vec3 woW, vec3 wiW, out float pdf) {
     if (wi.z <= 0.0) return vec3(0.0);
     vec3 h = normalize(wo + wi);
     float cosH = clamp(dot(wo, h), 0.0, 1.0);
-    float body = (1.0 - f.s.metallic) * (1.0 - f.s.transmission) * (1.0 - maxComponent(dielectricFresnel(f, cosH)));
+    float body = (1.0 - f.s.metallic) * (1.0 - f.s.transmission) * diffuseUnderSpecular(f, wi.z, cosH);
     value = f.diffuse ? f.s.baseColor * (body * kInvPi * wi.z) : vec3(0.0);
     pdf = f.shares.diffuse * wi.z * kInvPi;
     if (kUseSpecular && !isMirror(alpha) && f.shares.reflection > 0.0) {

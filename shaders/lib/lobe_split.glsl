@@ -28,10 +28,11 @@ Bsdf sharpPart(Bsdf f) {
 }
 bool hasSharpPart(Bsdf f) { return f.shares.clearcoat > 0.0 || (hasSharpBase(f) && f.shares.reflection + f.shares.transmission > 0.0); }
 
-// Reflectance of the diffuse lobe, the Fresnel loss taken at normal incidence; multiplies IndirectTexel.diffuse.
+// Reflectance of the diffuse lobe where as much arrives from everywhere; multiplies IndirectTexel.diffuse.
 vec3 gatheredAlbedo(Bsdf f) {
-  float body = (1.0 - f.s.metallic) * (1.0 - f.s.transmission) * (1.0 - maxComponent(dielectricFresnel(f, 1.0)));
-  return f.s.baseColor * max(body, 0.0);
+  float under = f.exactFresnel ? 1.0 - maxComponent(dielectricFresnel(f, 1.0))
+                               : f.underSpecular * meanThroughSpecular(f);
+  return f.s.baseColor * ((1.0 - f.s.metallic) * (1.0 - f.s.transmission) * max(under, 0.0));
 }
 // Reflectance of the rough glossy lobe at normal incidence; multiplies IndirectTexel.glossy.
 vec3 gatheredReflectance(Bsdf f) {

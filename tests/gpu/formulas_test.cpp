@@ -7,6 +7,7 @@
 #include "tests/gpu/formulas.spv.hpp"
 #include "tests/gpu/kernel.hpp"
 #include "tests/gpu/shaders/formulas.h"
+#include "tests/support/closed_form.hpp"
 
 namespace limn::test {
 namespace {
@@ -149,6 +150,31 @@ TEST(Formula, LinearChangesNothing) {
   const auto in = colours();
   const auto out = evaluate(shared::kFormulaToneMap + uint32_t(ToneMap::linear), in);
   for (size_t i = 0; i < in.size(); ++i) EXPECT_EQ(glm::vec3(out[i]), glm::vec3(in[i]));
+}
+
+TEST(Formula, AlbedosOfGgxAreItsIntegrals) {
+  const auto weight = [](double c) { return schlick(c, 0.0); };
+  const auto full = [](double) { return 1.0; };
+  constexpr int kCosines = 8, kDirections = 400;
+  for (const double roughness : {0.0, 0.02, 0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0}) {
+    const Ggx ggx{roughness * roughness};
+    std::vector<glm::vec4> at;
+    for (int i = 0; i < kCosines; ++i) at.push_back({(i + 0.5f) / kCosines, float(ggx.alpha), 0, 0});
+    for (const float cosine : {0.05f, 1.0f}) at.push_back({cosine, float(ggx.alpha), 0, 0});
+    const auto fits = evaluate(shared::kFormulaGgxAlbedo, at);
+    double mean = 0.0, meanWeight = 0.0;
+    for (size_t i = 0; i < at.size(); ++i) {
+      const double albedo = ggx.albedo(at[i].x, full, kDirections), weighted = ggx.albedo(at[i].x, weight, kDirections);
+      EXPECT_NEAR(fits[i].x, albedo, 0.01) << "roughness " << roughness << ", cosine " << at[i].x;
+      EXPECT_NEAR(fits[i].y, weighted, 0.005) << "roughness " << roughness << ", cosine " << at[i].x;
+      EXPECT_GE(fits[i].y, weighted - 0.004) << "roughness " << roughness << ", cosine " << at[i].x;
+      if (i >= kCosines) continue;
+      mean += albedo * 2.0 * at[i].x / kCosines;
+      meanWeight += weighted * 2.0 * at[i].x / kCosines;
+    }
+    EXPECT_NEAR(fits[0].z, mean, 0.008) << "roughness " << roughness;
+    EXPECT_NEAR(fits[0].w, meanWeight, 0.004) << "roughness " << roughness;
+  }
 }
 
 }  // namespace

@@ -37,6 +37,9 @@ inline double fresnel(double cosine, double ior) {
   return 0.5 * (s * s + p * p);
 }
 
+/// Fresnel's factor as glTF takes it. [Schlick 1994]
+inline double schlick(double cosine, double f0) { return f0 + (1 - f0) * std::pow(1 - cosine, 5); }
+
 /// GGX with height-correlated Smith shadowing in double precision, written from [Heitz 2014].
 struct Ggx {
   double alpha;
@@ -53,18 +56,20 @@ struct Ggx {
     if (o.z <= 0 || i.z <= 0) return 0;
     return d(glm::normalize(o + i)) / (1 + lambda(o) + lambda(i)) / (4 * o.z * i.z);
   }
-  /// Share of the light of a white sky that goes to a viewer at this cosine.
-  double albedo(double cosine) const {
-    if (alpha == 0) return 1;
+  /// Share of the light of a white sky that goes to a viewer at this cosine, by microfacets that reflect `fresnel` of the
+  /// cosine with them; n² directions.
+  double albedo(double cosine, const std::function<double(double)>& fresnel = [](double) { return 1.0; },
+                int n = 1000) const {
+    if (alpha == 0) return fresnel(cosine);
     const glm::dvec3 o(std::sqrt(1 - cosine * cosine), 0, cosine);
     // u is the distribution function of the slope of a normal: D cos(h) dh = du dphi / 2pi.
-    return quadrature(1000, [&](double u, double v) {
+    return quadrature(n, [&](double u, double v) {
       const double r = alpha * std::sqrt(u / (1 - u)), phi = 2 * kPi * v;
       const glm::dvec3 h = glm::normalize(glm::dvec3(r * std::cos(phi), r * std::sin(phi), 1));
       const double oh = glm::dot(o, h);
       const glm::dvec3 i = 2 * oh * h - o;
       if (oh <= 0 || i.z <= 0) return 0.0;
-      return oh / (o.z * h.z) / (1 + lambda(o) + lambda(i));
+      return fresnel(oh) * oh / (o.z * h.z) / (1 + lambda(o) + lambda(i));
     });
   }
 };

@@ -41,11 +41,13 @@ double errorOfQuotient(const PicturePair& pair, const PicturePair& truth) {
 
 const KnownMiss* knownOf(const HardCase& hard, const std::string& technique) {
   for (const KnownMiss& miss : hard.known)
-    if (miss.technique.empty() || miss.technique == technique) return &miss;
+    if (miss.technique == technique) return &miss;
   return nullptr;
 }
 
-HardFigure figure(double value, double general, double known) { return {value, general, known > 0.0 ? known : general}; }
+HardFigure figure(double value, double general, double known = 0.0) {
+  return {value, general, known > 0.0 ? known : general};
+}
 
 bool isBlack(const HardCase& hard) { return hard.radiance == 0.0; }
 
@@ -60,11 +62,11 @@ HardFigure deviation(const HardCase& hard, HardCell& cell, const PicturePair& pa
   return figure(std::max(0.0, biasOf(pair, reference, "beauty")), kBiasedRelMse + hard.rounding, known);
 }
 
-HardFigure energy(const HardCase& hard, const HardCell& cell, const PicturePair& pair, const PicturePair& truth, double known) {
+HardFigure energy(const HardCase& hard, const HardCell& cell, const PicturePair& pair, const PicturePair& truth) {
   const double most = hard.ceiling.value_or(isBlack(hard) ? hard.outside : pairMean(truth));
   double allowed = cell.biased ? kBiasedEnergy : 1.0 + hard.rounding;
   if (!cell.biased && !isBlack(hard)) allowed += sigmasOf(kMostCases) * errorOfQuotient(pair, truth);
-  return figure(pairMean(pair) / most, allowed, known);
+  return figure(pairMean(pair) / most, allowed);
 }
 
 /// The picture of all samples of both.
@@ -108,10 +110,10 @@ HardCell judge(const HardCase& hard, const TechniqueInfo& technique, const HardP
   cell.sound = isSound(pair.a) && isSound(pair.b);
   cell.largest = std::max(largestOf(pair.a, "beauty"), largestOf(pair.b, "beauty"));
   cell.deviation = deviation(hard, cell, pair, reference, known ? known->deviation : 0.0);
-  cell.energy = energy(hard, cell, pair, truth, known ? known->energy : 0.0);
-  cell.discarded = figure(double(pictures.discarded) / double(pictures.taken), kDiscarded, 0.0);
+  cell.energy = energy(hard, cell, pair, truth);
+  cell.discarded = figure(double(pictures.discarded) / double(pictures.taken), kDiscarded);
   const double mostFireflies = hard.caustics ? 1.0 : kFireflies;
-  cell.fireflies = figure(fireflyShare(hard, pair, truth), mostFireflies, known ? known->fireflies : 0.0);
+  cell.fireflies = figure(fireflyShare(hard, pair, truth), mostFireflies);
   if (known) cell.reason = known->reason;
   return cell;
 }

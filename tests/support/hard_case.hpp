@@ -11,13 +11,11 @@
 
 namespace limn::test {
 
-/// A promise that a technique is known to break in one scene: the bounds it keeps there, and the reason. Such a cell stays marked.
+/// A picture that a technique is known to miss in one scene: the bound it keeps there, and the reason. Such a cell stays marked.
 struct KnownMiss {
-  std::string technique;             ///< name; empty: every one
+  std::string technique;             ///< name
   std::string reason;                ///< one sentence, for the table
-  double deviation = 0.0;            ///< bound in place of the general one; 0: the general one
-  double energy = 0.0;
-  double fireflies = 0.0;
+  double deviation = 0.0;            ///< bound in place of the general one
 };
 
 /// Light that glass and mirrors focus reaches points by few paths, and is interpolated between them.

@@ -70,11 +70,6 @@ std::vector<HardCase> furnaces() {
     cases[i].bounces = 16;
     cases[i].rounding = 5e-3;
   }
-  KnownMiss fresnel;
-  fresnel.reason = "glTF mixes its layers by Fresnel's factor of the half vector: each lobe alone stays below 1, "
-                   "both together below 1.83";
-  fresnel.energy = 1.83;
-  cases[7].known = {fresnel};
   return cases;
 }
 

@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "shaders/lib/ggx_albedo.glsl"
 #include "shaders/lib/tone_map.glsl"
 #include "tests/gpu/shaders/formulas.h"
 
@@ -23,5 +24,7 @@ void main() {
   } else if (push.formula == kFormulaSrgb) result[i] = vec4(linearToSrgb(v.xyz), 0.0);
   else if (push.formula == kFormulaRemainder)
     result[i] = vec4(float(remainderOf(floatBitsToUint(v.x), floatBitsToUint(v.y))));
+  else if (push.formula == kFormulaGgxAlbedo)
+    result[i] = vec4(ggxAlbedo(v.x, v.y), ggxSchlickAlbedo(v.x, v.y), meanGgxAlbedo(v.y), meanGgxSchlickAlbedo(v.y));
   else result[i] = vec4(toneMap(v.xyz, push.formula - kFormulaToneMap), 0.0);
 }
