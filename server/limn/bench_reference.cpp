@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <limits>
 
+#include "renderer/base/check.hpp"
 #include "renderer/base/clock.hpp"
 #include "renderer/base/hash.hpp"
 #include "renderer/film/exr.hpp"
 #include "renderer/techniques/path_tracing.hpp"
 #include "server/limn/hex_text.hpp"
 #include "server/limn/render_stats.hpp"
+#include "shaders/embedded_shaders.hpp"
 
 namespace limn::bench {
 namespace {
@@ -20,12 +22,19 @@ namespace fs = std::filesystem;
 constexpr uint32_t kSeeds[2] = {0x7fff0001u, 0x7fff0002u};  // of the halves; runs have small ones
 constexpr const char* kKey = "limn:reference";
 
+/// Of the path tracer's code: another model of light makes other references.
+std::string modelKey() {
+  const std::span<const uint32_t> words = embeddedShader("path_tracing");
+  LIMN_CHECK(!words.empty());
+  return hexText(fnv1a(words.data(), words.size_bytes()));
+}
+
 /// Everything that decides what the reference converges to.
 std::string keyOf(const LoadedScene& loaded, const SessionConfig& config) {
   RenderStats stats;
   stats.sceneHash = loaded.scene.hash();
   stats.config = config;
-  std::string key = std::to_string(config.width) + "x" + std::to_string(config.height);
+  std::string key = modelKey() + " " + std::to_string(config.width) + "x" + std::to_string(config.height);
   for (const auto& [name, value] : filmMetadata(stats, loaded.scene.view, 0.0))
     for (const char* part : {"limn:sceneHash", "limn:view", "limn:parameters", "limn:version"})
       if (name == part) key += " " + value;
