@@ -60,6 +60,7 @@ class PointProjectionTechnique final : public Technique {
   void forgetLight();
   Result<Progress> light(const TechniqueContext& context, double seconds);
   Result<Progress> refine(const TechniqueContext& context, double seconds);
+  Result<void> balance(const TechniqueContext& context);
   Result<void> makeBuffers(const TechniqueContext& context);
   Result<void> updatePoints(const TechniqueContext& context);
   PointLayout layoutOfPoints() const;
@@ -116,7 +117,7 @@ class PointProjectionTechnique final : public Technique {
   Result<void> gather(const TechniqueContext& context, uint32_t first, uint32_t count);
   Result<void> gatherAtPoints(const TechniqueContext& context, uint32_t first, uint32_t count);
   Result<void> fill(const TechniqueContext& context, uint32_t stride, uint32_t last);
-  Result<void> shade(const TechniqueContext& context, uint32_t first, uint32_t count, bool firstOfFilm);
+  Result<void> shade(const TechniqueContext& context, uint32_t first, uint32_t count, uint32_t sample, bool firstOfFilm);
 
   PointProjectionSettings m_settings;
   SceneNeeds m_needs;
@@ -157,6 +158,9 @@ class PointProjectionTechnique final : public Technique {
   bool m_dropLookedUp = false; ///< most of it, by the samples of this pass
   float m_meanLuminance = 0.0f;  ///< gathered on the start grid [W·sr⁻¹·m⁻²]
   uint32_t m_pass = 0;
+  uint32_t m_samplesDone = 0;    ///< of direct light, by passes before this one
+  uint32_t m_passSamples = 1;    ///< by this one
+  uint32_t m_samplesWanted = 1;  ///< by every one, while the limit leaves as many
   bool m_preview = false;      ///< a first picture from few points is under way
   uint32_t m_shaded = 0;       ///< pixels of the first picture, in the order of m_pixelOrder
   uint32_t m_fillStride = 8;

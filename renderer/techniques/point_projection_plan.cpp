@@ -258,11 +258,13 @@ void PointProjectionTechnique::pushFilter() {
                 }, 4});
 }
 
+// Samples of direct light, one after the other.
 void PointProjectionTechnique::pushShade(uint32_t end, bool firstOfFilm) {
-  m_tasks.push({"shade", &m_shadeRate, [end](const TechniqueContext&) -> Result<uint32_t> { return end; },
-                [this, firstOfFilm](const TechniqueContext& c, uint32_t first, uint32_t count) {
-                  return shade(c, first, count, firstOfFilm);
-                }, 256});
+  for (uint32_t sample = 0; sample < m_passSamples; ++sample)
+    m_tasks.push({"shade", &m_shadeRate, [end](const TechniqueContext&) -> Result<uint32_t> { return end; },
+                  [this, sample, firstOfFilm](const TechniqueContext& c, uint32_t first, uint32_t count) {
+                    return shade(c, first, count, sample, firstOfFilm);
+                  }, 256});
 }
 
 }  // namespace limn
