@@ -232,18 +232,19 @@ Result<Progress> PointProjectionTechnique::advance(const TechniqueContext& conte
   return p;
 }
 
-// How many samples of direct light the passes to come take: while these are what is wrong with the picture, gathers wait. By
-// the film alone, so that the same number of passes gives the same bits.
+// How many samples of direct light the next pass takes: while these are what is wrong with the picture, gathers wait. By the film
+// alone, so that the same number of passes gives the same bits. Where the number of samples is asked for, each has its pass.
 Result<void> PointProjectionTechnique::balance(const TechniqueContext& context) {
-  if (gathers() && m_pass >= kFirstBalanced && std::has_single_bit(m_pass)) {
+  if (context.sampleLimit > 0 || !gathers()) return {};
+  if (m_pass >= kFirstBalanced && std::has_single_bit(m_pass)) {
     auto means = context.statistics.means(context.device, context.film);
     if (!means) return means.error();
     auto noise = context.statistics.estimate(context.device, context.film, means->radiance);
     if (!noise) return noise.error();
     m_samplesWanted = uint32_t(std::clamp(noise->relMse / kEnoughNoise, 1.0, double(kMostPassSamples)));
   }
-  const uint32_t left = sampleLimit(context) - std::min(m_samplesDone, sampleLimit(context));
-  m_passSamples = std::clamp(m_samplesWanted, 1u, std::max(left, 1u));
+  const uint32_t left = m_settings.maxSamples - std::min(m_samplesDone, m_settings.maxSamples);
+  m_passSamples = std::clamp(left, 1u, m_samplesWanted);
   return {};
 }
 

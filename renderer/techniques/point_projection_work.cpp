@@ -121,7 +121,7 @@ Result<void> PointProjectionTechnique::fill(const TechniqueContext& context, uin
 Result<void> PointProjectionTechnique::shade(const TechniqueContext& context, uint32_t first, uint32_t count, uint32_t sample,
                                              bool firstOfFilm) {
   const uint32_t index = context.firstSample + m_samplesDone + sample;
-  const shared::ShadePush push{first, count, index, context.seed, firstOfFilm, m_dropLookedUp && sample == 0, !gathers(), 0};
+  const shared::ShadePush push{first, count, index, context.seed, firstOfFilm, m_dropLookedUp && sample == 0, !gathers(), m_pass};
   const auto all = shadeBindings(context);
   auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) { m_shade->record(r, all, push, workgroups(count)); });
   if (m_pass > 0) return done;

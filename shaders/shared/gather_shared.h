@@ -69,7 +69,7 @@ struct ShadePush {
   uint firstOfFilm;     // 1: the film holds nothing yet; what it holds is replaced
   uint firstOfGather;   // 1: looked-up light of earlier samples is stale and counts for less
   uint directOnly;      // 1: no indirect light at all
-  uint pad;
+  uint passes;          // before this one
 };
 LIMN_ASSERT_SIZE(ShadePush, 32);
 

@@ -171,7 +171,7 @@ bool advance(inout Walk w) {
 
 // Looked-up light goes stale when more of it is gathered, everything else is kept: the two means are apart, and the film
 // holds their sum. Of stale light a share stays: where a first sample happens to look past an edge, the pixel would be black.
-const float kOlderShare = 0.25;  // of the samples that an older mean counts for
+const float kOlderShare = 0.25;  // of the passes, or of the samples where they are fewer, that an older mean counts for
 
 void addToFilm(uint pixel, FilmSample s, vec3 gathered) {
   FilmPixel film = readFilm(pixel);
@@ -181,7 +181,7 @@ void addToFilm(uint pixel, FilmSample s, vec3 gathered) {
     before = vec4(0.0);
   }
   vec4 after = before;
-  if (push.firstOfGather != 0u) after.w *= kOlderShare;
+  if (push.firstOfGather != 0u) after.w = kOlderShare * min(after.w, float(push.passes));
   after.w += 1.0;
   after.rgb += (gathered - after.rgb) / after.w;
   film.mean.rgb -= before.rgb;
