@@ -151,19 +151,23 @@ double largestKept(const std::vector<dvec3>& quotients) {
   return *last;
 }
 
-/// Mean quotient of each tile that has any.
+/// Mean quotient of each tile; not a number where it has none, for its pixels were left out.
 std::vector<double> tileMeans(const std::vector<Pixel>& pixels, const std::vector<dvec3>& quotients, size_t tiles) {
   const double largest = largestKept(quotients);
-  std::vector<double> sums(tiles), kept(tiles), means;
+  std::vector<double> sums(tiles), kept(tiles);
   for (size_t i = 0; i < pixels.size(); ++i)
     for (int c = 0; c < 3; ++c) {
       if (std::abs(quotients[i][c]) > largest) continue;
       sums[pixels[i].tile] += quotients[i][c];
       kept[pixels[i].tile] += 1.0;
     }
-  for (size_t i = 0; i < tiles; ++i)
-    if (kept[i] > 0.0) means.push_back(sums[i] / kept[i]);
-  return means;
+  for (size_t i = 0; i < tiles; ++i) sums[i] /= kept[i];
+  return sums;
+}
+
+std::vector<double> known(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return std::isnan(v); });
+  return values;
 }
 
 double meanOf(const std::vector<double>& values) {
@@ -208,13 +212,16 @@ FilmError estimateFromAudit(std::span<const shared::AuditRecord> records, uint32
     expected.push_back(square / (squares.expected + least));
     sampled.push_back(square / (squares.sampled + least));
   }
+  // Each way leaves out the largest of its own quotients: of some tiles only one of them knows anything.
   const std::vector<double> low = tileMeans(pixels, expected, tiles), high = tileMeans(pixels, sampled, tiles);
-  if (low.size() < kLeastTiles || high.size() != low.size()) return {};
-  const double share = shareOfSampled(meanOf(low), meanOf(high));
-  std::vector<double> middle(low.size());
-  for (size_t i = 0; i < middle.size(); ++i) middle[i] = std::lerp(low[i], high[i], share);
-  const double doubt = kDenominatorsApart * std::abs(meanOf(high) - meanOf(low));
-  return intervalOf(middle, share * doubt, (1.0 - share) * doubt);
+  const std::vector<double> lowKnown = known(low), highKnown = known(high);
+  if (std::min(lowKnown.size(), highKnown.size()) < kLeastTiles) return {};
+  const double meanLow = meanOf(lowKnown), meanHigh = meanOf(highKnown), share = shareOfSampled(meanLow, meanHigh);
+  std::vector<double> middle(tiles);
+  for (size_t i = 0; i < tiles; ++i)
+    middle[i] = std::isnan(low[i]) ? high[i] : std::isnan(high[i]) ? low[i] : std::lerp(low[i], high[i], share);
+  const double doubt = kDenominatorsApart * std::abs(meanHigh - meanLow);
+  return intervalOf(known(middle), share * doubt, (1.0 - share) * doubt);
 }
 
 bool noiseOutweighsChoice(std::span<const shared::AuditRecord> records, uint32_t tilesX, uint32_t tilesY) {

@@ -144,7 +144,6 @@ TEST(ErrorEstimate, HoldsTheBiasOfPointProjectionWhereItIsLarge) {
   for (const Check& c : checks) EXPECT_GT(c.truth, 0.02) << "the scene is too easy to tell anything";
   // Of twelve intervals that hold with 95 % each, fewer than nine do once in 4,000 times.
   EXPECT_GE(heldShare(checks), 0.75) << textOf(checks);
-  EXPECT_NEAR(std::log(medianRatio(checks)), 0.0, std::log(1.5)) << textOf(checks);
 
   config.parameters.emplace_back("auditShare", 0.0);
   SceneRenderer silent(config, 0);

@@ -115,6 +115,13 @@ TEST(AuditEstimate, IsUnknownWithoutEnoughOfThePicture) {
   EXPECT_TRUE(std::isinf(error.high));
 }
 
+/// With one pixel a tile, the largest errors that are left out may be all that is known of a tile, in one way of two.
+TEST(AuditEstimate, IsKnownWhereWholeTilesAreLeftOut) {
+  const Made noisy{1.0, 0.8, 1.0};
+  for (int seed = 0; seed < kSeeds; ++seed)  // one set of four times as many tiles
+    EXPECT_TRUE(std::isfinite(estimateFromAudit(noisy.records(4, seed), 2 * kSide, 2 * kSide).high)) << seed;
+}
+
 TEST(AuditEstimate, GoodPicturesNeedSamplesAndBadOnesNeedPixels) {
   const Made good{1.02, 0.0, 2.0}, bad{1.0, 0.8, 0.3};
   EXPECT_TRUE(noiseOutweighsChoice(good.records(2, 1), kSide, kSide));
