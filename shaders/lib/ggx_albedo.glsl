@@ -1,5 +1,5 @@
 // What GGX microfacets reflect in all when light scatters once among them: rational fits to the integrals of ggx.glsl's
-// functions, for alpha in [0, 1]. tests/gpu/ggx_albedo_test.cpp holds them to quadrature.
+// functions, for alpha in [0, 1]. tests/gpu/formulas_test.cpp holds them to quadrature.
 #ifndef LIMN_GGX_ALBEDO_GLSL
 #define LIMN_GGX_ALBEDO_GLSL
 #include "shaders/lib/math.glsl"

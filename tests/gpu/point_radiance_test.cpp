@@ -71,7 +71,8 @@ TEST(PointRadiance, PlainDielectricsLoseNoEnergyToTheirSpecularLayer) {
   m.roughness = 0.3f;
   const auto [front, back] = composed(m, kArriving);
   const float specular = meanAlbedo(0.09, 0.04);
-  expectNear(front, (0.5f * (1.0f - specular) + specular) * kFront, 0.0f, 0.01f);
+  const float forFits = 0.004f;  // what bsdf.glsl keeps back, so that errors of its fits add no light
+  expectNear(front, (0.5f * (1.0f - specular - forFits) + specular) * kFront, 0.0f, 2e-3f);
 }
 
 TEST(PointRadiance, GlassReflectsFresnelsMean) {

@@ -136,14 +136,15 @@ TEST(ErrorEstimate, HoldsTheBiasOfPointProjectionWhereItIsLarge) {
   SessionConfig config = pointProjection(kSide, kSide, 6, 0);
   config.auditPathsPerPass = 8000;
   std::vector<Check> checks;
-  for (uint32_t seed = 0; seed < 12; ++seed) {
+  for (uint32_t seed = 0; seed < 4; ++seed) {
     SceneRenderer renderer(config, seed);
     renderer.load(scene);
     checks.push_back(renderer.check(kPasses, references.at(scene)));
   }
-  for (const Check& c : checks) EXPECT_GT(c.truth, 0.02) << "the scene is too easy to tell anything";
-  // Of twelve intervals that hold with 95 % each, fewer than nine do once in 4,000 times.
-  EXPECT_GE(heldShare(checks), 0.75) << textOf(checks);
+  for (const Check& c : checks) {
+    EXPECT_GT(c.truth, 0.02) << "the scene is too easy to tell anything";
+    EXPECT_TRUE(c.held()) << textOf(checks);
+  }
 
   config.parameters.emplace_back("auditShare", 0.0);
   SceneRenderer silent(config, 0);
