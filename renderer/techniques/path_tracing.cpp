@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "renderer/base/clock.hpp"
+#include "renderer/base/mix.hpp"
 #include "renderer/gpu/ray_counters.hpp"
 #include "renderer/gpu/tailored_pass.hpp"
 #include "renderer/techniques/pixel_order.hpp"
@@ -21,6 +22,15 @@ constexpr double kInitialPathsPerSecond = 2e5;  // of a slow two-core machine; t
 /// No more: Mesa 22.3's software device silently ends every loop of an invocation after 65,535 turns of all of them together
 /// (measured), and four paths through a large scene may take a fifth of that.
 uint32_t samplesOfPass(uint32_t pass) { return pass < 2 ? 1 : pass < 3 ? 2 : 4; }
+
+/// Sample `push.firstSample` alone, as the first of a sequence that no other sample shares. Its parity, which tells the half
+/// of the film, stays.
+shared::PathTracingPush independentSample(shared::PathTracingPush push) {
+  push.seed = mix32(push.seed ^ mix32(push.firstSample + 1));
+  push.firstSample &= 1;
+  push.sampleCount = 1;
+  return push;
+}
 
 class PathTracing final : public Technique {
  public:
@@ -43,11 +53,12 @@ class PathTracing final : public Technique {
   Result<void> makeLists(const TechniqueContext& context);
   Result<void> beginPass(const TechniqueContext& context);
   Result<void> dispatch(const TechniqueContext& context, uint32_t count);
+  void record(vk::CommandRecorder& recorder, const std::vector<vk::Binding>& bindings, shared::PathTracingPush push) const;
   uint32_t sampleLimit(const TechniqueContext& context) const { return context.sampleLimit ? context.sampleLimit : m_maxSamples; }
   Progress progress() const;
 
   uint32_t m_maxBounces = 32, m_rouletteStart = 3, m_minSamples = 16, m_maxSamples = 4096;
-  bool m_adaptive = true;
+  bool m_adaptive = true, m_sobol = true;
   float m_noiseThreshold = 0.01f;
 
   gpu::TailoredPass m_trace{"path_tracing", sizeof(shared::PathTracingPush)};
@@ -86,11 +97,13 @@ void PathTracing::setParameter(const std::string& name, double value) {
   else if (name == "noiseThreshold") m_noiseThreshold = float(value);
   else if (name == "minSamples") m_minSamples = uint32_t(value);
   else if (name == "maxSamples") m_maxSamples = uint32_t(value);
+  else if (name == "sobol") m_sobol = value != 0.0;
   m_converged = false;
 }
 
 Result<void> PathTracing::makeLists(const TechniqueContext& context) {
   m_pixelOrder = makePixelOrder(context.film.width(), context.film.height());
+  m_listWidth = m_listHeight = 0;  // while lists are of two sizes
   vk::BufferDesc desc;
   desc.owner = "path-tracing";
   desc.name = "pathTracing.order";
@@ -149,9 +162,7 @@ Result<void> PathTracing::dispatch(const TechniqueContext& context, uint32_t cou
                                      context.seed, m_maxBounces, m_rouletteStart, 0};
   const auto all = bindings(context, adaptive ? m_active : m_order);
   const double begin = nowSeconds();
-  auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) {
-    recordPathTracing(r, *m_trace, all, push, m_needs);
-  });
+  auto done = gpu::runNow(context.device, [&](vk::CommandRecorder& r) { record(r, all, push); });
   if (!done) return done;
   const double seconds = nowSeconds() - begin;
   m_rate.measured(uint64_t(count) * m_passSamples, seconds);
@@ -159,6 +170,13 @@ Result<void> PathTracing::dispatch(const TechniqueContext& context, uint32_t cou
   m_raysTraced = gpu::countedRays(m_counters);
   m_discarded = gpu::countedDiscards(m_counters);
   return {};
+}
+
+void PathTracing::record(vk::CommandRecorder& recorder, const std::vector<vk::Binding>& bindings,
+                         shared::PathTracingPush push) const {
+  if (m_sobol) return recordPathTracing(recorder, *m_trace, bindings, push, m_needs);
+  for (const uint32_t end = push.firstSample + push.sampleCount; push.firstSample < end; ++push.firstSample)
+    recordPathTracing(recorder, *m_trace, bindings, independentSample(push), m_needs);
 }
 
 Result<Progress> PathTracing::advance(const TechniqueContext& context, double seconds) {
@@ -219,7 +237,8 @@ const TechniqueInfo& pathTracingInfo() {
        {"adaptive", "Stop pixels that are done", "", ParameterType::boolean, 0, 1, 1, CostClass::regather},
        {"noiseThreshold", "Relative standard error at which a pixel is done", "1", ParameterType::real, 0.0005, 1, 0.01, CostClass::regather},
        {"minSamples", "Samples before a pixel may stop", "samples", ParameterType::integer, 4, 4096, 16, CostClass::regather},
-       {"maxSamples", "Samples at which every pixel stops", "samples", ParameterType::integer, 1, 1048576, 4096, CostClass::regather}}};
+       {"maxSamples", "Samples at which every pixel stops", "samples", ParameterType::integer, 1, 1048576, 4096, CostClass::regather},
+       {"sobol", "Scrambled Sobol points; without them every sample is independent, to compare with", "", ParameterType::boolean, 0, 1, 1, CostClass::regather}}};
   return kInfo;
 }
 

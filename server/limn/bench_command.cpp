@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "renderer/base/clock.hpp"
-#include "renderer/film/file_bytes.hpp"
+#include "renderer/base/file_bytes.hpp"
 #include "renderer/vk/device.hpp"
 #include "server/limn/bench_figures.hpp"
 #include "server/limn/bench_growth.hpp"
@@ -36,10 +36,14 @@ void printScene(const SceneResult& scene) {
                 "", last.parts->noise, last.parts->biasSquared, 1.96 * last.parts->biasDeviation, 100.0 * last.spread,
                 100.0 * last.toldSpread);
   }
-  for (const Convergence& c : scene.convergences)
-    if (c.slopeAll && c.spread)
+  for (const Convergence& c : scene.convergences) {
+    if (c.own.slopeAll && c.spread)
       std::printf("  %-18s  %u seeds: slope of every quotient %.3f +- %.3f, variance between seeds over told %.2f\n",
-                  c.technique.c_str(), c.seeds, c.slopeAll->exponent, c.slopeAll->deviation, c.spread->ratio());
+                  c.technique.c_str(), c.seeds, c.own.slopeAll->exponent, c.own.slopeAll->deviation, c.spread->ratio());
+    if (c.independent && c.independent->slopeAll)
+      std::printf("  %-18s  independent samples: slope %.3f +- %.3f, %.2f times the error\n", "",
+                  c.independent->slopeAll->exponent, c.independent->slopeAll->deviation, *c.gain());
+  }
   std::fflush(stdout);
 }
 

@@ -10,6 +10,7 @@ namespace limn::bench {
 namespace {
 
 constexpr double kFirstReferenceSeconds = 1.0;  // its rate is not known before
+constexpr const char* kSobol = "sobol";
 
 /// One seed: its picture whenever a multiple of kFewestSamples is reached, and what the film says of the last.
 struct SeedRun {
@@ -44,6 +45,26 @@ Result<SeedRun> runSeed(vk::Device& device, const LoadedScene& loaded, const Ses
   return run;
 }
 
+Result<std::vector<SeedRun>> runSeeds(vk::Device& device, const LoadedScene& loaded, SessionConfig config, uint32_t seeds) {
+  std::vector<SeedRun> runs;
+  for (config.seed = 0; config.seed < seeds; ++config.seed) {
+    Result<SeedRun> run = runSeed(device, loaded, config);
+    if (!run) return run.error();
+    runs.push_back(run.take());
+  }
+  return runs;
+}
+
+/// Of the technique with each sample independent of all others; nothing where it has no such choice.
+std::optional<SessionConfig> independentOf(SessionConfig config) {
+  const auto isSobol = [](const ParameterInfo& parameter) { return parameter.name == kSobol; };
+  const std::vector<ParameterInfo>& known = findTechnique(config.technique)->parameters;
+  if (std::none_of(known.begin(), known.end(), isSobol)) return std::nullopt;
+  std::erase_if(config.parameters, [](const auto& entry) { return entry.first == kSobol; });
+  config.parameters.emplace_back(kSobol, 0.0);
+  return config;
+}
+
 /// Halves whose noise is small beside that of the runs' own pictures, which is all that their product needs.
 Result<ReferencePictures> makeReference(vk::Device& device, const LoadedScene& loaded, const BenchOptions& options,
                                         const std::string& name) {
@@ -76,7 +97,8 @@ Result<Convergence::Level> errorOfBlocks(const SeedRun& run, uint64_t samples, c
   return level;
 }
 
-Result<void> addLevels(const std::vector<SeedRun>& runs, const Reference& reference, Convergence& result) {
+Result<Convergence::Fall> fallOf(const std::vector<SeedRun>& runs, const Reference& reference) {
+  Convergence::Fall result;
   std::vector<double> samples;
   std::vector<std::vector<double>> trimmed(runs.size()), all(runs.size());
   for (uint64_t n = kFewestSamples; n <= kMostSamples; n *= 2) {
@@ -94,7 +116,7 @@ Result<void> addLevels(const std::vector<SeedRun>& runs, const Reference& refere
   }
   result.slope = slopeOfSeeds(samples, trimmed);
   result.slopeAll = slopeOfSeeds(samples, all);
-  return {};
+  return result;
 }
 
 Result<std::optional<SeedSpread>> lastSpread(const std::vector<SeedRun>& runs, const Reference& reference) {
@@ -109,25 +131,35 @@ Result<std::optional<SeedSpread>> lastSpread(const std::vector<SeedRun>& runs, c
 
 }  // namespace
 
+std::optional<double> Convergence::gain() const {
+  if (!independent || independent->levels.empty() || own.levels.empty()) return std::nullopt;
+  return independent->levels.back().relMseAll / own.levels.back().relMseAll;
+}
+
 Result<Convergence> measureConvergence(vk::Device& device, const LoadedScene& loaded, const BenchOptions& options,
                                        const std::string& name, SessionConfig config) {
   config.width = config.height = kConvergenceSide;
   config.sampleCount = uint32_t(kMostSamples);
-  std::vector<SeedRun> runs;
-  for (config.seed = 0; config.seed < options.convergence; ++config.seed) {
-    Result<SeedRun> run = runSeed(device, loaded, config);
-    if (!run) return run.error();
-    runs.push_back(run.take());
-  }
+  const Result<std::vector<SeedRun>> runs = runSeeds(device, loaded, config, options.convergence);
+  if (!runs) return runs.error();
   const Result<ReferencePictures> reference = makeReference(device, loaded, options, name);
   if (!reference) return reference.error();
   Convergence result;
   result.technique = config.technique;
   result.seeds = options.convergence;
-  if (Result<void> done = addLevels(runs, reference->reference(), result); !done) return done.error();
-  Result<std::optional<SeedSpread>> spread = lastSpread(runs, reference->reference());
+  Result<Convergence::Fall> own = fallOf(*runs, reference->reference());
+  if (!own) return own.error();
+  result.own = own.take();
+  Result<std::optional<SeedSpread>> spread = lastSpread(*runs, reference->reference());
   if (!spread) return spread.error();
   result.spread = spread.take();
+  if (const std::optional<SessionConfig> independent = independentOf(config)) {
+    const Result<std::vector<SeedRun>> others = runSeeds(device, loaded, *independent, options.convergence);
+    if (!others) return others.error();
+    Result<Convergence::Fall> fall = fallOf(*others, reference->reference());
+    if (!fall) return fall.error();
+    result.independent = fall.take();
+  }
   return result;
 }
 

@@ -14,11 +14,18 @@ struct Convergence {
     double samples = 0.0;              ///< of a pixel, in one picture
     double relMse = 0.0, relMseAll = 0.0;  ///< means over blocks of so many samples and over seeds
   };
+  struct Fall {
+    std::vector<Level> levels;         ///< each twice the samples of the one before
+    std::optional<Slope> slope, slopeAll;  ///< of relMse and relMseAll over samples
+  };
   std::string technique;
   uint32_t seeds = 0;
-  std::vector<Level> levels;           ///< each twice the samples of the one before
-  std::optional<Slope> slope, slopeAll;///< of relMse and relMseAll over samples
-  std::optional<SeedSpread> spread;    ///< at the last level
+  Fall own;
+  std::optional<Fall> independent;     ///< without Sobol points, of a technique that can: slope -1 wherever it is unbiased
+  std::optional<SeedSpread> spread;    ///< at the last level of `own`
+
+  /// Error of independent samples over that of as many own ones, at the most samples.
+  std::optional<double> gain() const;
 };
 constexpr uint32_t kConvergenceSide = 64;                  ///< [pixel]
 constexpr uint64_t kFewestSamples = 4, kMostSamples = 64;  ///< of a pixel, in pictures of the first and last level

@@ -46,16 +46,19 @@ std::string convergenceFigures(const BenchResults& results) {
   for (const SceneResult& scene : results.scenes)
     for (const Convergence& c : scene.convergences) {
       std::vector<std::string> cells = {scene.name, c.technique, std::to_string(c.seeds)};
-      for (const std::optional<Slope>& slope : {c.slopeAll, c.slope})
+      const std::optional<Slope> independent = c.independent ? c.independent->slopeAll : std::nullopt;
+      for (const std::optional<Slope>& slope : {independent, c.own.slopeAll}) {
         cells.push_back(slope ? withDeviation(slope->exponent, slope->deviation, "%.3f") : "–");
-      cells.push_back(c.slopeAll ? verdictName(judgeSlope(*c.slopeAll)) : "–");
+        cells.push_back(slope ? verdictName(judgeSlope(*slope)) : "–");
+      }
+      cells.push_back(c.gain() ? number(*c.gain(), "%.2f") : "–");
       cells.push_back(c.spread ? withDeviation(c.spread->ratio(), c.spread->deviation) : "–");
       lines += lineOf(cells);
     }
   if (lines.empty()) return "";
   return "\n## Slope of relMSE over samples, and spread between seeds\n\n" +
-         headOf({"scene", "technique", "seeds", "every quotient", "without the largest", "−1 ± 0.05",
-                 "variance between seeds / told"}) +
+         headOf({"scene", "technique", "seeds", "independent samples", "−1 ± 0.05", "Sobol points", "−1 ± 0.05",
+                 "error of the former / of the latter", "variance between seeds / told"}) +
          lines;
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "protocol/json_value.hpp"
-#include "renderer/film/file_bytes.hpp"
+#include "renderer/base/file_bytes.hpp"
 #include "server/limn/bench_html.hpp"
 
 namespace limn::bench {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "renderer/film/file_bytes.hpp"
+#include "renderer/base/file_bytes.hpp"
 #include "server/limn/bench_html.hpp"
 #include "server/limn/bench_page.hpp"
 

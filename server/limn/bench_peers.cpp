@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "renderer/film/file_bytes.hpp"
+#include "renderer/base/file_bytes.hpp"
 #include "server/limn/bench_scene.hpp"
 
 namespace limn::bench {

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "protocol/json_writer.hpp"
-#include "renderer/film/file_bytes.hpp"
+#include "renderer/base/file_bytes.hpp"
 
 namespace limn::bench {
 namespace {
@@ -43,7 +43,7 @@ void addConvergencePlot(const BenchResults& results, std::vector<Plot>& plots) {
   for (const SceneResult& scene : results.scenes)
     for (const Convergence& convergence : scene.convergences) {
       Plot::Line line{scene.name + ", " + convergence.technique, {}};
-      for (const Convergence::Level& level : convergence.levels)
+      for (const Convergence::Level& level : convergence.own.levels)
         line.points.push_back({level.samples, level.relMseAll});
       plot.lines.push_back(line);
     }

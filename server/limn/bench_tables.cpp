@@ -171,13 +171,23 @@ void writeLevel(JsonWriter& json, const Convergence::Level& level) {
   json.endObject();
 }
 
+void writeFall(JsonWriter& json, const Convergence::Fall& fall) {
+  writeList(json, "levels", fall.levels, writeLevel);
+  writeSlope(json, "slope", fall.slope);
+  writeSlope(json, "slopeAll", fall.slopeAll);
+}
+
 void writeConvergence(JsonWriter& json, const Convergence& convergence) {
   json.beginObject();
   json.field("technique", convergence.technique);
   json.field("seeds", convergence.seeds);
-  writeList(json, "levels", convergence.levels, writeLevel);
-  writeSlope(json, "slope", convergence.slope);
-  writeSlope(json, "slopeAll", convergence.slopeAll);
+  writeFall(json, convergence.own);
+  if (convergence.independent) {
+    json.key("independent");
+    json.beginObject();
+    writeFall(json, *convergence.independent);
+    json.endObject();
+  }
   if (convergence.spread) {
     json.field("betweenSeeds", convergence.spread->between);
     json.field("told", convergence.spread->told);

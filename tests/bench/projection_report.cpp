@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "protocol/json_writer.hpp"
-#include "renderer/film/file_bytes.hpp"
+#include "renderer/base/file_bytes.hpp"
 
 namespace limn::projection {
 namespace {

@@ -33,10 +33,16 @@ const std::vector<float>& layer(const FilmImage& image, const std::string& name)
   return found->data;
 }
 
-TEST(Film, SampleRangesMergeToTheWhole) {
+class FilmParts : public testing::TestWithParam<double> {};  // whether samples come from Sobol points
+
+TEST_P(FilmParts, MergeToTheWhole) {
   const Scene scene = richScene().scene;
-  const FilmImage whole = rendered(scene, plainConfig(0, 16));
-  const FilmImage first = rendered(scene, plainConfig(0, 8)), second = rendered(scene, plainConfig(8, 8));
+  const auto part = [&](uint32_t firstSample, uint32_t sampleCount) {
+    SessionConfig config = plainConfig(firstSample, sampleCount);
+    config.parameters.emplace_back("sobol", GetParam());
+    return rendered(scene, config);
+  };
+  const FilmImage whole = part(0, 16), first = part(0, 8), second = part(8, 8);
   for (const float n : layer(whole, "samples")) ASSERT_EQ(n, 16.0f);
   for (const float n : layer(second, "samples")) ASSERT_EQ(n, 8.0f);
   for (const char* name : {"beauty", "direct", "albedo", "normal"}) {
@@ -50,6 +56,25 @@ TEST(Film, SampleRangesMergeToTheWhole) {
     EXPECT_LE(worst, 1e-6) << name;
   }
   EXPECT_NE(layer(first, "beauty"), layer(second, "beauty"));
+}
+INSTANTIATE_TEST_SUITE_P(, FilmParts, testing::Values(1.0, 0.0),
+                         [](const auto& each) { return std::string(each.param != 0.0 ? "OfSobolPoints" : "OfIndependentSamples"); });
+
+TEST(Film, DepthIsMeasuredFromTheEye) {
+  for (const bool perspective : {true, false})
+    for (const char* technique : {"path-tracing", "point-projection"}) {
+      SCOPED_TRACE(std::string(technique) + (perspective ? ", perspective" : ", parallel"));
+      SceneBuilder b;
+      b.quad(b.diffuse(glm::vec3(0.5f)), {-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0});
+      b.look({0, 0, 5}, {0, 0, 0}, 0.02f);
+      b.scene.view.lens.perspective = perspective;
+      b.scene.view.lens.ymag = 0.05f;
+      b.scene.view.lens.znear = 2.0f;
+      SessionConfig config = smallPicture();
+      config.technique = technique;
+      config.sampleCount = 2;
+      for (const float depth : layer(rendered(b.scene, config), "depth")) ASSERT_NEAR(depth, 5.0, 1e-3);
+    }
 }
 
 TEST(Film, TheSeedAloneDecidesTheBits) {

@@ -10,7 +10,7 @@
 namespace limn::bench {
 namespace {
 
-TEST(BenchConvergence, ThePathTracersErrorFallsAtLeastAsItsSamplesAndIsAsTold) {
+TEST(BenchConvergence, ThePathTracersErrorFallsAsItsSamplesFasterWithSobolPointsAndIsAsTold) {
   const test::ScratchDirectory scratch;
   BenchOptions options;
   options.references = scratch.file("references");
@@ -25,15 +25,20 @@ TEST(BenchConvergence, ThePathTracersErrorFallsAtLeastAsItsSamplesAndIsAsTold) {
         measureConvergence(test::SharedDevice::get(), room, options, "room", config);
     ASSERT_TRUE(measured.ok()) << measured.error().text();
     EXPECT_EQ(measured->seeds, 3u);
-    ASSERT_EQ(measured->levels.size(), 5u);
-    for (size_t i = 0; i < 5; ++i) {
-      const Convergence::Level& level = measured->levels[i];
-      EXPECT_EQ(level.samples, double(kFewestSamples << i));
-      EXPECT_GE(level.relMseAll, level.relMse);
+    ASSERT_TRUE(measured->independent && measured->spread);
+    for (const Convergence::Fall& fall : {measured->own, *measured->independent}) {
+      ASSERT_EQ(fall.levels.size(), 5u);
+      for (size_t i = 0; i < 5; ++i) {
+        EXPECT_EQ(fall.levels[i].samples, double(kFewestSamples << i));
+        EXPECT_GE(fall.levels[i].relMseAll, fall.levels[i].relMse);
+      }
+      ASSERT_TRUE(fall.slopeAll);
     }
-    ASSERT_TRUE(measured->slopeAll && measured->spread);
-    EXPECT_NE(judgeSlope(*measured->slopeAll), SlopeVerdict::flatter) << measured->slopeAll->exponent;
-    EXPECT_GT(measured->slopeAll->exponent, -2.0);
+    EXPECT_EQ(judgeSlope(*measured->independent->slopeAll), SlopeVerdict::met)
+        << measured->independent->slopeAll->exponent;
+    EXPECT_NE(judgeSlope(*measured->own.slopeAll), SlopeVerdict::flatter) << measured->own.slopeAll->exponent;
+    EXPECT_GT(measured->own.slopeAll->exponent, -2.0);
+    EXPECT_GT(*measured->gain(), 1.0);
     // Evenly spread points may differ by less than the film expects, and never by more.
     EXPECT_GT(measured->spread->ratio(), 0.5);
     EXPECT_LT(measured->spread->ratio(), 1.2);

@@ -136,9 +136,9 @@ TEST(BenchSpread, NeedsThreePicturesOfTheReferencesSizeAndAnEstimate) {
 }
 
 BenchResults resultsWithConvergence() {
-  Convergence convergence{"path-tracing", 8, {{4.0, 0.2, 0.4}, {8.0, 0.15, 0.2}}, {}, {}, {}};
-  convergence.slope = Slope{-0.7, 0.02};
-  convergence.slopeAll = Slope{-1.01, 0.03};
+  Convergence convergence{"path-tracing", 8, {}, {}, {}};
+  convergence.own = {{{4.0, 0.2, 0.4}, {8.0, 0.15, 0.2}}, Slope{-0.7, 0.02}, Slope{-1.2, 0.03}};
+  convergence.independent = Convergence::Fall{{{4.0, 0.2, 0.4}, {8.0, 0.15, 0.3}}, {}, Slope{-1.01, 0.03}};
   convergence.spread = SeedSpread{0.019, 0.02, 0.04};
   SceneResult scene;
   scene.name = "room";
@@ -152,11 +152,13 @@ TEST(BenchConvergence, IsOnThePageInTheTablesAndInAPlot) {
   const BenchResults results = resultsWithConvergence();
   const std::string section = convergenceSection(results, "nowhere");
   EXPECT_THAT(section, HasSubstr("<td>room</td><td>path-tracing</td><td>8</td><td>0.4</td><td>0.2</td>"
-                                 "<td>-1.010 ± 0.030</td><td>met</td><td>-0.700 ± 0.020</td>"
+                                 "<td>-1.010 ± 0.030</td><td>met</td><td>-1.200 ± 0.030</td><td>steeper</td>"
+                                 "<td>1.50</td><td>-0.700 ± 0.020</td>"
                                  "<td>0.019</td><td>0.02</td><td>0.95 ± 0.04</td>"));
   EXPECT_EQ(convergenceSection({}, "nowhere"), "");
   EXPECT_THAT(resultsJson(results),
               HasSubstr("\"slopeAll\":{\"exponent\":-1.01,\"deviation\":0.03,\"verdict\":\"met\"}"));
+  EXPECT_THAT(resultsJson(results), HasSubstr("\"exponent\":-1.2,\"deviation\":0.03,\"verdict\":\"steeper\""));
   EXPECT_THAT(resultsJson(results), HasSubstr("\"spreadRatio\":0.95"));
   const std::vector<Plot> plots = plotsOf(results);
   ASSERT_EQ(plots.size(), 1u);
@@ -182,7 +184,7 @@ TEST(BenchFigures, AreTheOnesThatAReadmeQuotes) {
   const std::string text = resultsFigures(results);
   EXPECT_THAT(text, HasSubstr("| scene | technique | 0.5 s |\n|---|---|---|\n| room | path-tracing | 0.012 |\n"));
   EXPECT_THAT(text, HasSubstr("| room | Somebody | 0.5 at 2.5 s |\n"));
-  EXPECT_THAT(text, HasSubstr("| room | path-tracing | 8 | -1.010 ± 0.030 | -0.700 ± 0.020 | met | 0.95 ± 0.04 |\n"));
+  EXPECT_THAT(text, HasSubstr("| room | path-tracing | 8 | -1.010 ± 0.030 | met | -1.200 ± 0.030 | steeper | 1.50 | 0.95 ± 0.04 |\n"));
   EXPECT_THAT(text, HasSubstr("| path-tracing | 110 | 3 | 94 % | 0.96 |\n| other | 0 | 9 | – | – |\n"));
   EXPECT_THAT(text, HasSubstr("0.90 times as long at least (room, other), 3.00 times at most (room, path-tracing)"));
   EXPECT_THAT(text, HasSubstr("0 of 1 cells keep every promise. The largest deviation for its bound: 0.5 of 0.1 leak"));
