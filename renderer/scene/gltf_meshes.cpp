@@ -1,5 +1,6 @@
 #include "renderer/scene/gltf_meshes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -101,10 +102,22 @@ std::vector<glm::vec3> readPositions(const Document& document, int accessor) {
   return grouped<glm::vec3>(flat);
 }
 
+/// How many values were outside 0 to 1. [glTF 2.0 §3.9.2]
+uint64_t clampToUnit(std::vector<float>& values) {
+  uint64_t outside = 0;
+  for (float& value : values) {
+    const float inside = std::clamp(value, 0.0f, 1.0f);
+    outside += value != inside;
+    value = inside;
+  }
+  return outside;
+}
+
 std::vector<glm::vec4> readColors(Document& document, int accessor) {
   const bool alpha = document.model.accessors[size_t(accessor)].type == TINYGLTF_TYPE_VEC4;
   std::vector<float> flat = readFloats(document, accessor, alpha ? 4 : 3, Integers::normalized);
   document.reporter.count("vertex colour components that were not finite became 0", clean(flat));
+  document.reporter.count("vertex colour components outside 0 to 1 were cut off there", clampToUnit(flat));
   if (alpha) return grouped<glm::vec4>(flat);
   std::vector<glm::vec4> colors;
   for (const glm::vec3& rgb : grouped<glm::vec3>(flat)) colors.emplace_back(rgb, 1.0f);

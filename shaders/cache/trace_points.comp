@@ -7,6 +7,7 @@
 #include "shaders/shared/point_shared.h"
 #include "shaders/shared/relight_shared.h"
 #include "shaders/lib/scene_bindings.glsl"
+#define LIMN_UNLIT_AFTER 1u
 #include "shaders/lib/path.glsl"
 
 layout(local_size_x = 64) in;
@@ -17,7 +18,8 @@ layout(push_constant, scalar) uniform Push { TracePointsPush push; };
 
 const uint kRouletteStart = 2u;
 
-// Light that a ray from here finds at emitters themselves is direct, and not this path's.
+// Light that a ray from here finds at emitters themselves is direct, and not this path's; but for unlit surfaces, which relighting
+// does not know.
 Path startPath(uint side, Facet f, uint sampleIndex) {
   Path p = newPath(makeSampler(side, sampleIndex, push.seed), push.bounces, kRouletteStart);
   vec3 n = (side & 1u) == 0u ? f.normal : -f.normal, t, b;

@@ -36,7 +36,7 @@ vec3 toLocal(Bsdf f, vec3 w) { return vec3(dot(w, f.t), dot(w, f.b), dot(w, f.s.
 vec3 toWorld(Bsdf f, vec3 w) { return f.t * w.x + f.b * w.y + f.s.normal * w.z; }
 
 vec3 dielectricFresnel(Bsdf f, float cosH) {
-  if (f.exactFresnel) return f.s.specularColor * f.s.specular * fresnelDielectric(cosH, f.eta);
+  if (f.exactFresnel) return min(f.s.specularColor * fresnelDielectric(cosH, f.eta), vec3(1.0)) * f.s.specular;
   return f.dielectricF0 + (f.dielectricF90 - f.dielectricF0) * schlickWeight(cosH);
 }
 vec3 metalFresnel(Bsdf f, float cosH) { return f.s.baseColor + (1.0 - f.s.baseColor) * schlickWeight(cosH); }
@@ -72,10 +72,11 @@ float diffuseUnderSpecular(Bsdf f, float cosI, float cosH) {
   return kUseSpecular ? f.underSpecular * throughSpecular(f, cosI) : 1.0;
 }
 
-// What the coat leaves to the layers below, seen from the viewer. [KHR_materials_clearcoat]
-float underClearcoat(Bsdf f, vec3 woW) {
-  return kUseClearcoat ? 1.0 - f.s.clearcoat * clearcoatFresnel(abs(dot(f.s.clearcoatNormal, woW))) : 1.0;
+// What the coat leaves to the layers below, emission among them, seen from the viewer. [KHR_materials_clearcoat]
+float underClearcoat(Surface s, vec3 woW) {
+  return kUseClearcoat ? 1.0 - s.clearcoat * clearcoatFresnel(abs(dot(s.clearcoatNormal, woW))) : 1.0;
 }
+float underClearcoat(Bsdf f, vec3 woW) { return underClearcoat(f.s, woW); }
 
 Bsdf makeBsdf(Surface s, vec3 woW) {
   Bsdf f;
@@ -161,19 +162,18 @@ vec3 evaluateBsdf(Bsdf f, vec3 woW, vec3 wiW, out float pdf) {
   float alpha = f.s.alpha;
   vec3 value = vec3(0.0);
   if (reflected) {
-    if (wi.z <= 0.0) return vec3(0.0);
+    float coatPdf, coat = evaluateClearcoat(f, woW, wiW, coatPdf);
+    pdf = f.shares.clearcoat * coatPdf;
+    if (wi.z <= 0.0) return vec3(coat);  // below a bump of the layers under it
     vec3 h = normalize(wo + wi);
     float cosH = clamp(dot(wo, h), 0.0, 1.0);
     float body = (1.0 - f.s.metallic) * (1.0 - f.s.transmission) * diffuseUnderSpecular(f, wi.z, cosH);
     value = f.diffuse ? f.s.baseColor * (body * kInvPi * wi.z) : vec3(0.0);
-    pdf = f.shares.diffuse * wi.z * kInvPi;
+    pdf += f.shares.diffuse * wi.z * kInvPi;
     if (kUseSpecular && !isMirror(alpha) && f.shares.reflection > 0.0) {
       value += reflectionFresnel(f, cosH) * (ggxD(h, alpha) * ggxG2(wo, wi, alpha) / (4.0 * wo.z));
       pdf += f.shares.reflection * visibleNormalPdf(wo, h, alpha) / (4.0 * max(cosH, 1e-7));
     }
-    float coatPdf;
-    float coat = evaluateClearcoat(f, woW, wiW, coatPdf);
-    pdf += f.shares.clearcoat * coatPdf;
     return value * underClearcoat(f, woW) + coat;
   }
   if (!kUseTransmission || f.shares.transmission <= 0.0 || isMirror(alpha) || wi.z >= 0.0) return vec3(0.0);

@@ -16,4 +16,7 @@ void cameraRay(vec2 pixel, out vec3 originR, out vec3 dirR) {
   }
 }
 
+// [m] from where a camera ray starts back to the eye, or to the plane through it that all rays cross.
+float distanceToEye(vec3 originR) { return camera.perspective != 0u ? distance(originR, camera.eyeR) : camera.clipNear; }
+
 #endif

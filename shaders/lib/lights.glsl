@@ -1,6 +1,7 @@
 // Next-event estimation over all lights, one chosen by power or, where there are many, by what each may bring.
 #ifndef LIMN_LIGHTS_GLSL
 #define LIMN_LIGHTS_GLSL
+#include "shaders/lib/bsdf.glsl"
 #include "shaders/lib/environment.glsl"
 #include "shaders/lib/light_tree.glsl"
 #include "shaders/lib/surface.glsl"
@@ -62,9 +63,14 @@ float rangeWindow(LightData light, float d) {
   return clamp(1.0 - x2 * x2, 0.0, 1.0);
 }
 
-vec3 triangleEmission(uint triangle, vec2 barycentrics) {
+// What a place of a triangle light sends along the unit vector `dirW`, on average over what alpha lets through: rays meet the
+// place as often as its alpha says.
+vec3 triangleEmission(uint triangle, vec2 barycentrics, vec3 dirW) {
   uvec4 t = texelFetch(triangles, int(triangle));
-  vec3 emission = materials[t.w].emission;
+  bool partial = kUseAlpha && (materials[t.w].flags & (kMaterialMask | kMaterialBlend)) != 0u;
+  vec3 emission = materials[t.w].emission * (partial ? surfaceAlpha(triangle, barycentrics) : 1.0);
+  if (kUseClearcoat && materials[t.w].clearcoat > 0.0)
+    emission *= underClearcoat(makeSurface(triangle, barycentrics, dirW), dirW);
   if (!kUseTextures) return emission;
   Attributes a = interpolate(t.xyz, vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics));
   uint first = materials[t.w].firstSlot, count = materials[t.w].slotCount;
@@ -102,7 +108,7 @@ LightSample sampleTriangleLight(LightData light, float probability, vec3 p, vec2
   if (!(cosLight > 1e-7)) return s;
   s.distance = distanceShortOf(p0, scale, cosLight, d);
   s.pdf = triangleLightPdf(light, probability, d, cosLight);
-  s.radiance = triangleEmission(light.triangle, barycentrics) / s.pdf;
+  s.radiance = triangleEmission(light.triangle, barycentrics, -s.dirW) / s.pdf;
   return s;
 }
 

@@ -10,6 +10,12 @@
 #define LIMN_ALPHA_ENABLED kUseAlpha
 #include "shaders/lib/shadow.glsl"
 
+// How many scatterings light of unlit surfaces has had before it leaves them. 1: where a path begins at something that light
+// sampling lit before, it is that which light sampling does not find.
+#ifndef LIMN_UNLIT_AFTER
+#define LIMN_UNLIT_AFTER 0u
+#endif
+
 struct Path {
   Sampler sampler_;
   vec3 originR, dirR;
@@ -17,7 +23,7 @@ struct Path {
   float etaScale;      // undoes the radiance scaling of refraction for Russian roulette
   float bsdfPdf;       // of dirR; 0 after a mirror or from the camera
   LightReceiver from;  // whom lights were chosen for where the path last scattered
-  float travelled;     // [m] from there to originR, through panes
+  float travelled;     // [m] from there, or from the eye, to originR, through panes
   vec3 absorption;     // [1/m] of the medium the ray is in
   uint bounce;         // surfaces scattered at, mirrors included, panes that were passed not
   uint maxBounces;     // after which no surface scatters any more
@@ -62,7 +68,7 @@ void addEmission(inout Path p, Surface s, Hit hit) {
     float probability = lightProbability(lights[index], p.from), cosLight = abs(dot(s.geometricNormal, p.dirR));
     weight = powerHeuristic(p.bsdfPdf, triangleLightPdf(lights[index], probability, p.travelled + hit.t, cosLight));
   }
-  addRadiance(p, p.throughput * s.emission * weight, p.bounce);
+  addRadiance(p, p.throughput * s.emission * (underClearcoat(s, -p.dirR) * weight), p.bounce);
 }
 
 void addLights(inout Path p, Bsdf bsdf, vec3 woW) {
@@ -94,11 +100,11 @@ bool advance(inout Path p) {
   if (p.result.hit == 0.0) {
     p.result.albedo = s.baseColor;
     p.result.normal = s.normal;
-    p.result.depth = hit.t;
+    p.result.depth = p.travelled + hit.t;
     p.result.hit = 1.0;
   }
   if ((s.flags & kMaterialUnlit) != 0u) {
-    addRadiance(p, p.throughput * s.baseColor, p.bounce);
+    addRadiance(p, p.throughput * s.baseColor, p.bounce + LIMN_UNLIT_AFTER);
     return false;
   }
   if (kUseTriangleLights && (s.flags & kMaterialEmissive) != 0u) addEmission(p, s, hit);

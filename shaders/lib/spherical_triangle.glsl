@@ -49,7 +49,7 @@ LightSample sampleTriangleLightEvenly(LightData light, float probability, vec3 p
   float scale = max(maxComponent(abs(e1)), maxComponent(abs(e2)));
   float cosLight = abs(dot(normalize(cross(e1 / scale, e2 / scale)), dir));
   s.distance = distanceShortOf(p0, scale, cosLight, d);
-  s.radiance = triangleEmission(light.triangle, barycentrics) / s.pdf;
+  s.radiance = triangleEmission(light.triangle, barycentrics, -dir) / s.pdf;
   return s;
 }
 

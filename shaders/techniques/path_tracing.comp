@@ -19,6 +19,7 @@ Path startPath(uint pixel, uint sampleIndex) {
   Path p = newPath(makeFilmSampler(pixel, sampleIndex, push.seed), push.maxBounces, push.rouletteStart);
   vec2 corner = vec2(pixel % camera.width, pixel / camera.width);
   cameraRay(corner + next2D(p.sampler_), p.originR, p.dirR);
+  p.travelled = distanceToEye(p.originR);
   return p;
 }
 

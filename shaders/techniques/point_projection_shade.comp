@@ -33,7 +33,7 @@ struct Walk {
   vec3 absorption;    // [1/m] of the medium the ray is in
   float lobePdf;      // of dirR; 0 after a mirror or from the camera
   LightReceiver from; // whom lights were chosen for where the ray last scattered
-  float travelled;    // [m] from there to originR, through panes
+  float travelled;    // [m] from there, or from the eye, to originR, through panes
   uint depth;         // surfaces met before
   uint scatterings;   // of which were no panes that the ray passed
   FilmSample result;  // all light that no gather brought
@@ -50,7 +50,7 @@ Walk startWalk(uint pixel) {
   w.absorption = vec3(0.0);
   w.lobePdf = 0.0;
   w.from = LightReceiver(vec3(0.0), vec3(0.0), false);
-  w.travelled = 0.0;
+  w.travelled = distanceToEye(w.originR);
   w.depth = w.scatterings = 0u;
   w.result = FilmSample(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0);
   w.gathered = vec3(0.0);
@@ -77,7 +77,7 @@ void addEmission(inout Walk w, Surface s, Hit hit) {
     float probability = lightProbability(lights[index], w.from), cosLight = abs(dot(s.geometricNormal, w.dirR));
     weight = powerHeuristic(w.lobePdf, triangleLightPdf(lights[index], probability, w.travelled + hit.t, cosLight));
   }
-  addRadiance(w, w.throughput * s.emission * weight, w.scatterings);
+  addRadiance(w, w.throughput * s.emission * (underClearcoat(s, -w.dirR) * weight), w.scatterings);
 }
 
 uint alphaKey(Walk w, uint salt) { return hashCombine(w.sampler_.key ^ salt, w.sampler_.index ^ (w.depth << 24)); }
@@ -155,7 +155,7 @@ bool advance(inout Walk w) {
   if (w.depth == 0u) {
     w.result.albedo = s.baseColor;
     w.result.normal = s.normal;
-    w.result.depth = hit.t;
+    w.result.depth = w.travelled + hit.t;
     w.result.hit = 1.0;
   }
   if ((s.flags & kMaterialUnlit) != 0u) {

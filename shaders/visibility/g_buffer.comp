@@ -1,4 +1,4 @@
-// Who is seen through the centre of each pixel of a rectangle: triangle, barycentrics, distance.
+// Who is seen through the centre of each pixel of a rectangle: triangle, barycentrics, distance from the eye.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -22,5 +22,5 @@ void main() {
   bool found = traceClosest(originR, dirR, 3.0e38, unused, hit);
   vec3 posR = originR + dirR * hit.t;
   gBuffer[p.y * push.width + p.x] =
-      GBufferTexel(found ? hit.triangle : kNoTriangle, hit.barycentrics, found ? hit.t : 0.0, found ? posR : vec3(0.0), 0u);
+      GBufferTexel(found ? hit.triangle : kNoTriangle, hit.barycentrics, found ? distanceToEye(originR) + hit.t : 0.0, found ? posR : vec3(0.0), 0u);
 }

@@ -105,6 +105,54 @@ TEST(AreaLight, BothFacesShine) {
   }
 }
 
+TEST(AreaLight, ShinesByItsAlpha) {
+  const std::vector<glm::dvec3> corners{{-0.5, 1, -0.5}, {0.5, 1, -0.5}, {0.5, 1, 0.5}, {-0.5, 1, 0.5}};
+  const double whole = kAlbedo / kPi * 3.0 * polygonIrradiance({0, 0, 0}, kUp, corners);
+  const auto lit = [&](AlphaMode mode) {
+    SceneBuilder b = floorAtOrigin();
+    const uint32_t lamp = b.emitter(glm::vec3(3.0f));
+    b.scene.materials[lamp].alphaMode = mode;
+    b.scene.materials[lamp].baseColor.a = 0.3f;
+    shine(b, lamp, corners);
+    RenderOptions options;
+    options.samples = 256;
+    return render(b, options);
+  };
+  expectMean(lit(AlphaMode::blend), 0.3 * whole, 0.01);
+  expectMean(lit(AlphaMode::opaque), whole, 5e-3);
+  EXPECT_EQ(measure(lit(AlphaMode::mask)).mean, 0.0) << "cut out where alpha is under the cutoff";
+}
+
+/// (emission + the layers' light) x what the coat leaves, wherever it is seen from. [KHR_materials_clearcoat]
+TEST(AreaLight, ShinesThroughItsCoat) {
+  constexpr double kCoat = 0.8;
+  const auto through = [](double cosine) { return 1.0 - kCoat * (0.04 + 0.96 * std::pow(1.0 - cosine, 5)); };
+  const auto coated = [](SceneBuilder& b) {
+    const uint32_t lamp = b.emitter(glm::vec3(3.0f));
+    b.scene.materials[lamp].clearcoat = float(kCoat);
+    return lamp;
+  };
+  for (const double angle : {0.2, 1.2}) {
+    SceneBuilder b;
+    floorOf(b, coated(b), 5);
+    lookParallel(b, {std::sin(angle), std::cos(angle), 0}, {0, 0, 0}, 1e-3f);
+    expectMean(render(b), 3.0 * through(std::cos(angle)), 1e-4);
+  }
+  SceneBuilder b = floorAtOrigin();
+  lookParallel(b, {0.0, 0.02, 1.0}, {0, 0, 0}, 1e-4f);
+  const double half = 1.0, height = 0.3;
+  shine(b, coated(b), {{-half, height, -half}, {half, height, -half}, {half, height, half}, {-half, height, half}});
+  const double irradiance = quadrature(400, [&](double u, double v) {
+    const double x = half * (2 * u - 1), z = half * (2 * v - 1), d2 = x * x + z * z + height * height;
+    const double cosine = height / std::sqrt(d2);
+    return 4 * half * half * cosine * cosine / d2 * 3.0 * through(cosine);
+  });
+  RenderOptions options;
+  options.samples = 256;
+  options.maxBounces = 0;  // the coat mirrors the floor, too
+  expectMean(render(b, options), kAlbedo / kPi * irradiance, 0.01);
+}
+
 /// Light sampling wins on the rough plate, BSDF sampling on the shiny one; together they must not count light twice.
 TEST(AreaLight, GlossyPlateSeesIt) {
   for (const double distance : {0.3, 5.0})

@@ -26,6 +26,17 @@ TEST(Transmission, ClearShapesVanishInAFurnace) {
   }
 }
 
+/// Fresnel's reflectance never passes 1, whatever colour an extension multiplies it by.
+TEST(Transmission, StrongSpecularColourSendsBackNoMoreThanArrives) {
+  SceneBuilder b;
+  const uint32_t material = glass(b, 1.5f, 1);
+  b.scene.materials[material].specularColor = glm::vec3(40.0f);
+  b.scene.environment.radiance = glm::vec3(1.0f);
+  b.box(material, {-1, -0.2f, -1}, {1, 0.2f, 1});
+  b.look({0, 2, 1.5}, {0, 0, 0}, 0.6f);
+  expectMean(render(b), 1.0, 2e-3);
+}
+
 /// Straight through a slab; reflections go to and fro between its faces. [Beer-Lambert, Fresnel at normal incidence]
 TEST(Transmission, SlabAbsorbsByItsThickness) {
   for (const float ior : {1.0f, 1.5f}) {

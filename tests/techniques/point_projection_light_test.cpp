@@ -81,6 +81,18 @@ TEST(PointProjectionLight, PointLight) {
   expectAlike(differenceOf(withPointLight().scene, 3, 3), 0.005, 0.03);
 }
 
+// Light sampling knows no unlit surfaces: paths that begin at points bring what these send.
+TEST(PointProjectionLight, UnlitPanel) {
+  SceneBuilder b = flushLamp();
+  b.scene.materials[3].emission = glm::vec3(0.0f);
+  b.scene.materials[3].unlit = true;
+  b.scene.materials[3].baseColor = {9.0f, 9.0f, 9.0f, 1.0f};
+  const PicturePair truth = pairOf(b.scene, pathTracing(kWidth, kHeight, 8, 1024));
+  const PicturePair pair = pairOf(b.scene, pointProjection(kWidth, kHeight, 8, kPasses));
+  EXPECT_LT(biasOf(pair, truth, "beauty"), 0.02);
+  EXPECT_NEAR(meanOf(pair.a, "beauty") / meanOf(truth.a, "beauty"), 1.0, 0.05);
+}
+
 TEST(PointProjectionLight, RoughMetal) {
   const Scene scene = withSphere(flushLamp(), 1.0f, 0.6f);
   expectAlike(differenceOf(scene, 1, 1), 0.007, 0.02);

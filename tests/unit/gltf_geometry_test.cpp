@@ -148,9 +148,9 @@ TEST(GltfGeometry, VertexColoursOfAllTypes) {
   });
   EXPECT_EQ(shorts[0], glm::vec4(1, 0, 0.2f, 1));
   const auto floats = colorsOf([](GltfBuilder& b) {
-    return b.accessor<float>({2, 0.5f, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1}, 3);
+    return b.accessor<float>({2, 0.5f, -0.1f, 1, 1, 1, 1, 1, 1, 1, 1, 1}, 3);
   });
-  EXPECT_EQ(floats[0], glm::vec4(2, 0.5f, 0, 1));
+  EXPECT_EQ(floats[0], glm::vec4(1, 0.5f, 0, 1)) << "glTF 2.0 wants components cut off at 0 and 1";
 }
 
 TEST(GltfGeometry, MissingNormalsGiveFlatUnsharedTriangles) {
