@@ -294,6 +294,10 @@ test('every input has a name, and the live region speaks', async () => {
   const ids = await page.evaluate(() => [...document.querySelectorAll('[id]')].map((e) => e.id));
   assert.equal(new Set(ids).size, ids.length);
   await page.waitForFunction(() => document.getElementById('announcer').textContent !== '');
+  const live = await page
+    .locator('output, [role=status], [role=alert], [aria-live]')
+    .evaluateAll((list) => list.map((e) => e.id));
+  assert.deepEqual(live, ['announcer'], 'one region speaks, and it keeps its pace');
 });
 
 test('a narrow window keeps the picture and shows one panel at a time', async () => {

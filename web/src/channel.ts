@@ -45,6 +45,7 @@ export type ToWorker =
   | { type: 'send'; ticket: number; message: Outgoing }
   | { type: 'retry' }
   | { type: 'hidden'; hidden: boolean }
+  | { type: 'png'; ticket: number }
   | { type: 'hash'; ticket: number }
   | { type: 'mean'; ticket: number; area: Area };
 
@@ -56,5 +57,7 @@ export type ToPage =
   | { type: 'frame'; frame: FrameReport }
   | { type: 'fault'; text: string }
   | { type: 'file'; header: FrameHeader; bytes: Uint8Array }
+  /** The canvas as a PNG file; null where that failed. */
+  | { type: 'png'; ticket: number; png: Blob | null }
   | { type: 'hash'; ticket: number; hash: PixelHash }
   | { type: 'mean'; ticket: number; rgb: [number, number, number] };

@@ -6,6 +6,7 @@ import { boundsOf, poseFromView, poseOfCamera, viewFromPose } from './camera/sce
 import type { ConnectionState, FrameReport, Outgoing } from './channel';
 import { nowMs } from './clock';
 import { Bar } from './panels/bar';
+import { HistoryControls, type Direction } from './panels/history_controls';
 import { Inspector } from './panels/inspector';
 import { Ledger } from './panels/ledger';
 import { nameOf } from './panels/names';
@@ -16,6 +17,7 @@ import { StatsPanel } from './panels/stats_panel';
 import { bindTabs } from './panels/tabs';
 import type { Edit, FrameHeader, Picked, SceneMessage, ServerMessage } from './protocol/messages.gen';
 import { EditDesk, type Outcome } from './state/edit_desk';
+import { EditHistory } from './state/edit_history';
 import { Model } from './state/model';
 import { Statistics } from './state/statistics';
 import { StreamLink } from './stream_link';
@@ -43,6 +45,12 @@ const desk = new EditDesk({
   now: nowMs,
   onOutcome,
 });
+const history = new EditHistory({
+  scene: () => model.scene,
+  apply: (label, change) => desk.set(label, change),
+  onChange: () => historyControls.show(),
+});
+const historyControls = new HistoryControls(byId('ledger'), history, travel);
 const rig = new CameraRig({
   send: (pose) => desk.camera(viewFromPose(pose)),
   requestFrame,
@@ -73,6 +81,9 @@ new RenderPanel(byId('render'), model, {
   edit,
   setFieldOfView: (yfov) => whenConnected(() => rig.setFieldOfView(yfov)),
   saveExr: () => request({ op: 'save' }),
+  savePng: () => void savePng(),
+  follow: (label, change) => desk.set(label, change),
+  onStageResize: (callback) => new ResizeObserver(callback).observe(stage.element),
   stageSize: () => ({
     width: stage.element.clientWidth * devicePixelRatio,
     height: stage.element.clientHeight * devicePixelRatio,
@@ -105,9 +116,18 @@ function tokenOfAddress(): string | null {
   return new URLSearchParams(location.hash.slice(1)).get('token');
 }
 
-/** An edit by a panel: shown at once, sent with the next display frame. */
+/** An edit by hand: shown at once, sent with the next display frame, and remembered. */
 function edit(label: string, change: Edit): void {
-  whenConnected(() => desk.set(label, change));
+  whenConnected(() => history.edit(label, change));
+}
+
+/** Undoes or redoes an edit; the line under the picture then tells what it cost. */
+function travel(direction: Direction): void {
+  whenConnected(() => {
+    const label = history[direction]();
+    if (label === null) ledger.say(`Nothing to ${direction}`);
+    announcer.say(label === null ? `Nothing to ${direction}` : `${direction}: ${label}`);
+  });
 }
 
 function request(message: Outgoing): void {
@@ -140,6 +160,7 @@ function useCamera(index: number): void {
 function adoptScene(scene: SceneMessage): void {
   const fresh = scene.cause === 'loaded' || scene.cause === 'joined';
   if (scene.cause === 'loaded' || scene.name !== homeOf) rig.forgetHome();
+  if (fresh) history.clear();
   homeOf = scene.name;
   // A description that was made before our newest camera edit must not throw the camera back.
   if (fresh || (!rig.busy() && !desk.cameraPending())) rig.adopt(poseFromView(scene.view), boundsOf(scene));
@@ -235,10 +256,21 @@ function onFrame(frame: FrameReport): void {
 }
 
 function onFile(header: FrameHeader, bytes: Uint8Array): void {
-  const url = URL.createObjectURL(new Blob([bytes as Uint8Array<ArrayBuffer>], { type: 'application/octet-stream' }));
+  download(new Blob([bytes as Uint8Array<ArrayBuffer>], { type: 'application/octet-stream' }), header.encoding);
+}
+
+/** The picture as it is shown, whatever the connection does. */
+async function savePng(): Promise<void> {
+  const png = await link.png();
+  if (png) download(png, 'png');
+}
+
+/** Lets the browser keep a file that is named after the scene. */
+function download(file: Blob, extension: string): void {
+  const url = URL.createObjectURL(file);
   const anchor = document.createElement('a');
   anchor.href = url;
-  anchor.download = `${(model.scene?.name ?? 'limn').replace(/\.[^.]*$/, '')}.${header.encoding}`;
+  anchor.download = `${(model.scene?.name ?? 'limn').replace(/\.[^.]*$/, '')}.${extension}`;
   anchor.click();
   setTimeout(() => URL.revokeObjectURL(url), kDownloadMs);
 }

@@ -30,8 +30,11 @@ export class StreamLink {
     this.worker.onerror = (event) => hooks.onFault(`the stream worker failed: ${event.message}`);
     const offscreen = canvas.transferControlToOffscreen();
     this.post({ type: 'start', canvas: offscreen, url, token, client: 'limn-web 0.1' }, [offscreen]);
-    document.addEventListener('visibilitychange', () => this.post({ type: 'hidden', hidden: document.hidden }));
-    window.addEventListener('online', () => this.retry());
+    document.addEventListener('visibilitychange', () => this.tellHidden());
+    this.tellHidden(); // a page may open in the background
+    window.addEventListener('online', () => {
+      if (!document.hidden) this.retry();
+    });
   }
 
   send(ticket: number, message: Outgoing): void {
@@ -43,6 +46,11 @@ export class StreamLink {
     this.post({ type: 'retry' });
   }
 
+  /** The picture as it is shown; null where the browser cannot write it. */
+  png(): Promise<Blob | null> {
+    return this.ask((ticket) => ({ type: 'png', ticket }));
+  }
+
   /** Test hook. */
   hash(): Promise<PixelHash> {
     return this.ask((ticket) => ({ type: 'hash', ticket }));
@@ -51,6 +59,10 @@ export class StreamLink {
   /** Test hook. */
   mean(area: Area): Promise<[number, number, number]> {
     return this.ask((ticket) => ({ type: 'mean', ticket, area }));
+  }
+
+  private tellHidden(): void {
+    this.post({ type: 'hidden', hidden: document.hidden });
   }
 
   private ask<T>(question: (ticket: number) => ToWorker): Promise<T> {
@@ -89,6 +101,9 @@ export class StreamLink {
         break;
       case 'fault':
         this.hooks.onFault(data.text);
+        break;
+      case 'png':
+        this.answer(data.ticket, data.png);
         break;
       case 'hash':
         this.answer(data.ticket, data.hash);

@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { hexFromLinear, linearFromHex, linearFromSrgb, splitStrength, srgbFromLinear } from '../src/math/color';
 import { localPlacement } from '../src/math/placement';
-import { eulerFromQuat, quatFromEuler } from '../src/math/rotation';
+import { anglesOf, eulerFromQuat, quatFromEuler, type Quat } from '../src/math/rotation';
 import type { Vec3 } from '../src/math/vec3';
 
 describe('sRGB', () => {
@@ -20,6 +20,7 @@ describe('sRGB', () => {
   it('splits a radiance into colour and strength', () => {
     expect(splitStrength([6, 3, 1.5])).toEqual({ color: [1, 0.5, 0.25], strength: 6 });
     expect(splitStrength([0, 0, 0])).toEqual({ color: [1, 1, 1], strength: 0 });
+    expect(splitStrength([0, 0, 0], [1, 0.5, 0])).toEqual({ color: [1, 0.5, 0], strength: 0 });
   });
 });
 
@@ -39,6 +40,13 @@ describe('rotation', () => {
       expect(Math.abs(cosine)).toBeCloseTo(1, 6);
     },
   );
+  it('leaves shown angles that say the same, as the server rounds and signs it', () => {
+    const shown: Vec3 = [0, 135, 0];
+    const told = quatFromEuler(shown).map((c) => Math.fround(-c)) as unknown as Quat;
+    expect(anglesOf(told, shown)).toBe(shown);
+    expect(anglesOf(quatFromEuler([0, 135.01, 0]), shown)).toEqual([180, 44.99, 180]);
+    expect(anglesOf(quatFromEuler([10, 20, 30]), shown)).toEqual([10, 20, 30]);
+  });
   it('turns x to y by a quarter turn about z', () => {
     const rotation = quatFromEuler([0, 0, 90]);
     const { x } = localPlacement({ name: '', translation: [0, 0, 0], rotation: [...rotation], scale: [2, 1, 1] });

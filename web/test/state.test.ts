@@ -1,5 +1,6 @@
 import { describe, expect, it, vi } from 'vitest';
 import type { FrameReport } from '../src/channel';
+import { shareOfStage } from '../src/panels/picture_size';
 import { fitPicture, pixelAt } from '../src/panels/stage';
 import type { FrameHeader, SceneMessage, View } from '../src/protocol/messages.gen';
 import { Model, withEdit } from '../src/state/model';
@@ -141,6 +142,32 @@ describe('Inputs', () => {
     expect([scale.valueAt(0), scale.valueAt(1000)]).toEqual([low, high]);
     expect([scale.positionOf(low), scale.positionOf(high), scale.positionOf(high * 2)]).toEqual([0, 1000, 1000]);
     expect(scale.valueAt(600)).toBeGreaterThan(scale.valueAt(400));
+  });
+  it.each([
+    { minimum: 1, maximum: 64, integer: true },
+    { minimum: 1, maximum: 1_048_576, integer: true, logarithmic: true },
+  ])('an arrow key takes every whole number over %j to another', (options) => {
+    const { nextInteger } = sliderScale(options);
+    for (let value = options.minimum; value < 64; value++) {
+      expect(nextInteger(value, 1)).toBeGreaterThan(value);
+      expect(nextInteger(value + 1, -1)).toBeLessThan(value + 1);
+    }
+    expect([nextInteger(options.minimum, -1), nextInteger(options.maximum, 1)]).toEqual([
+      options.minimum,
+      options.maximum,
+    ]);
+  });
+  it('an arrow key misses no whole number of a short range, and goes a slider step in a long one', () => {
+    const short = sliderScale({ minimum: 1, maximum: 64, integer: true });
+    expect([short.nextInteger(32, 1), short.nextInteger(32, -1)]).toEqual([33, 31]);
+    const long = sliderScale({ minimum: 1, maximum: 1_048_576, integer: true, logarithmic: true });
+    expect(long.nextInteger(500_000, 1)).toBe(long.valueAt(long.positionOf(500_000) + 1));
+  });
+  it('a share of the window keeps its shape, also where its longer side is too long', () => {
+    expect(shareOfStage({ width: 801, height: 600 }, 0.5, 2048)).toEqual({ width: 401, height: 300 });
+    expect(shareOfStage({ width: 4000, height: 1000 }, 1, 2000)).toEqual({ width: 2000, height: 500 });
+    expect(shareOfStage({ width: 1000, height: 4000 }, 0.5, 1000)).toEqual({ width: 250, height: 1000 });
+    expect(shareOfStage({ width: 300, height: 4 }, 1, 1000)).toEqual({ width: 300, height: 16 });
   });
   it('writes numbers for people', () => {
     expect([0, 0.25, 1234.5678, 1.5e-7, NaN].map((v) => formatNumber(v))).toEqual([

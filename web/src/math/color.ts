@@ -27,9 +27,9 @@ export function linearFromHex(hex: string): Vec3 {
   return [component(1), component(3), component(5)];
 }
 
-/** Splits a radiance into a colour whose largest component is 1 and a factor. Black: white times 0. */
-export function splitStrength(color: Vec3): { color: Vec3; strength: number } {
+/** Splits a radiance into a colour whose largest component is 1 and a factor. Black: `hue` times 0. */
+export function splitStrength(color: Vec3, hue: Vec3 = [1, 1, 1]): { color: Vec3; strength: number } {
   const strength = Math.max(...color);
-  if (!(strength > 0)) return { color: [1, 1, 1], strength: 0 };
+  if (!(strength > 0)) return { color: hue, strength: 0 };
   return { color: [color[0] / strength, color[1] / strength, color[2] / strength], strength };
 }

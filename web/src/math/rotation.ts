@@ -6,6 +6,8 @@ export type Quat = readonly [number, number, number, number];
 const kDegree = Math.PI / 180;
 // Beyond this sine of the middle angle the first and last axes coincide (gimbal lock), and the last is put to zero.
 const kGimbalSine = 0.9999999;
+// Components of one rotation differ by less: it was rounded to single precision, or its angles to what is shown.
+const kRounding = 1e-6;
 
 /** Quaternion of the rotation about x, then y, then z, of the fixed axes; angles in degrees. */
 export function quatFromEuler(degrees: Vec3): Quat {
@@ -33,4 +35,18 @@ export function eulerFromQuat(q: Quat): Vec3 {
     Math.asin(sine) / kDegree,
     Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)) / kDegree,
   ];
+}
+
+/** True when both turn the same way; a quaternion and its negative do. */
+function isSameRotation(a: Quat, b: Quat): boolean {
+  const sign = a.reduce((sum, c, i) => sum + c * (b[i] ?? 0), 0) < 0 ? -1 : 1;
+  return a.every((c, i) => Math.abs(c - sign * (b[i] ?? 0)) < kRounding);
+}
+
+/** Angles of `q` as they are shown: `shown` where those say the same, for many angles make one rotation. */
+export function anglesOf(q: Quat, shown: Vec3): Vec3 {
+  if (isSameRotation(q, quatFromEuler(shown))) return shown;
+  const [x, y, z] = eulerFromQuat(q);
+  const rounded = (angle: number) => Number(angle.toFixed(4));
+  return [rounded(x), rounded(y), rounded(z)];
 }

@@ -1,7 +1,8 @@
 import type { Vec3 } from '../math/vec3';
-import { eulerFromQuat, quatFromEuler, type Quat } from '../math/rotation';
+import { anglesOf, quatFromEuler, type Quat } from '../math/rotation';
 import type { EditableField, TechniqueParameter } from '../protocol/messages.gen';
-import { checkField, colorField, numberField, selectField, textField, vectorField, type Field } from '../ui/fields';
+import { colorField } from '../ui/color_field';
+import { checkField, numberField, selectField, textField, vectorField, type Field } from '../ui/fields';
 import { titleFromName } from '../ui/format';
 
 const kDegrees = 180 / Math.PI;
@@ -127,6 +128,7 @@ function announcedColorAlpha(field: EditableField, onInput: (value: readonly num
 }
 
 function announcedRotation(field: EditableField, onInput: (value: Quat) => void): Field<WireValue> {
+  let shown: Vec3 = [0, 0, 0];
   const angles = vectorField({
     label: titleFromName(field.name),
     unit: '°',
@@ -134,10 +136,16 @@ function announcedRotation(field: EditableField, onInput: (value: Quat) => void)
     components: ['X', 'Y', 'Z'],
     softMinimum: -180,
     softMaximum: 180,
-    onInput: ([x = 0, y = 0, z = 0]) => onInput(quatFromEuler([x, y, z])),
+    onInput: ([x = 0, y = 0, z = 0]) => {
+      shown = [x, y, z];
+      onInput(quatFromEuler(shown));
+    },
   });
   return {
     element: angles.element,
-    set: (wire) => angles.set(eulerFromQuat(wire as unknown as Quat).map((a) => Number(a.toFixed(4)))),
+    set(wire) {
+      shown = anglesOf(wire as unknown as Quat, shown);
+      angles.set(shown);
+    },
   };
 }

@@ -13,7 +13,7 @@ export function describeOutcome(outcome: Outcome): string {
 
 /** The line under the picture: what the last edit cost, or what went wrong, beside a few figures of the picture. */
 export class Ledger {
-  private readonly edit = h('output', { class: 'edit', 'aria-label': 'Last edit' });
+  private readonly edit = h('span', { class: 'edit' });
   private readonly figures = h('span', { class: 'figures quiet' });
 
   constructor(root: HTMLElement) {

@@ -4,16 +4,14 @@ import { h, setText } from '../ui/dom';
 import { numberField, selectField, type Field } from '../ui/fields';
 import { titleFromName } from '../ui/format';
 import { announcedField, parameterField, type WireValue } from './announced_fields';
+import { PictureSize, type SizeActions } from './picture_size';
 
 const kDegrees = 180 / Math.PI;
-const kSides = [256, 384, 512, 768, 1024];
 
-export interface RenderActions {
-  edit(label: string, edit: Edit): void;
+export interface RenderActions extends SizeActions {
   setFieldOfView(yfov: number): void;
   saveExr(): void;
-  /** Size of the stage in device pixels. */
-  stageSize(): { width: number; height: number };
+  savePng(): void;
 }
 
 /** How the picture is made and shown: technique and its parameters, exposure and tone map, lens, size, and saving. */
@@ -21,7 +19,7 @@ export class RenderPanel {
   private resolve = new Map<string, Field<WireValue>>();
   private technique: Field<string> | null = null;
   private parameters = new Map<string, Field<number>>();
-  private size: Field<string> | null = null;
+  private readonly size: PictureSize;
   private readonly fieldOfView: Field<number>;
   private readonly about = h('p', { class: 'facts' });
   private readonly knobs = h('div', { class: 'knobs' });
@@ -41,6 +39,7 @@ export class RenderPanel {
       softMaximum: 100,
       onInput: (degrees) => actions.setFieldOfView(degrees / kDegrees),
     });
+    this.size = new PictureSize(model, actions);
     model.on('hello', (hello) => this.build(hello));
     model.on('scene', (scene) => this.refresh(scene));
     model.on('edited', (edit) => {
@@ -60,7 +59,6 @@ export class RenderPanel {
       hello.techniques.map((t) => ({ value: t.name, title: t.title, description: t.description })),
       (name) => this.actions.edit('Technique', { target: 'technique', technique: name }),
     );
-    this.size = selectField('Picture size', [], (value) => this.setSize(value));
     this.knobsOf = '';
     this.root.replaceChildren(
       h(
@@ -79,7 +77,12 @@ export class RenderPanel {
         this.about,
         this.knobs,
       ),
-      h('div', { class: 'buttons' }, h('button', { onClick: () => this.actions.saveExr() }, 'Save EXR')),
+      h(
+        'div',
+        { class: 'buttons' },
+        h('button', { onClick: () => this.actions.saveExr() }, 'Save EXR'),
+        h('button', { onClick: () => this.actions.savePng() }, 'Save PNG'),
+      ),
     );
     if (this.model.scene) this.refresh(this.model.scene);
   }
@@ -100,7 +103,7 @@ export class RenderPanel {
       if (value !== undefined) field.set(value);
     }
     this.showLens(scene);
-    this.showSizes(scene);
+    this.size.show(scene);
     this.showTechnique(scene);
   }
 
@@ -137,33 +140,5 @@ export class RenderPanel {
       const value = scene.parameters[name];
       if (value !== undefined) field.set(value);
     }
-  }
-
-  private showSizes(scene: SceneMessage): void {
-    const most = this.model.hello?.limits.maxImageSide ?? 1024;
-    const now = `${scene.width}x${scene.height}`;
-    const sizes = kSides.filter((side) => side <= most).map((side) => `${side}x${side}`);
-    const select = this.size?.element.querySelector('select');
-    if (!select || select.dataset['now'] === now) return;
-    select.dataset['now'] = now;
-    const option = (value: string, title: string) => h('option', { value }, title);
-    const pixels = (value: string) => value.replace('x', ' × ');
-    select.replaceChildren(
-      ...[...new Set([now, ...sizes])].map((value) => option(value, pixels(value))),
-      option('half', 'Half the window'),
-      option('window', 'The whole window'),
-    );
-    select.value = now;
-  }
-
-  private setSize(value: string): void {
-    const most = this.model.hello?.limits.maxImageSide ?? 1024;
-    const stage = this.actions.stageSize();
-    const share = value === 'half' ? 0.5 : 1;
-    const [width = 512, height = 512] = /^\d/.test(value)
-      ? value.split('x').map(Number)
-      : [stage.width * share, stage.height * share];
-    const side = (pixels: number) => Math.min(most, Math.max(16, Math.round(pixels)));
-    this.actions.edit('Picture size', { target: 'image', width: side(width), height: side(height) });
   }
 }

@@ -12,6 +12,7 @@ const kLongGroup = 12;
 export class ScenePanel {
   private readonly tree: Tree;
   private readonly report = h('div', { class: 'report' });
+  private reported = '';
   private readonly uri = h('input', {
     type: 'text',
     'aria-label': 'Scene file under the asset root',
@@ -21,7 +22,7 @@ export class ScenePanel {
 
   constructor(
     root: HTMLElement,
-    private readonly model: Model,
+    model: Model,
     load: (uri: string) => void,
     useCamera: (index: number) => void,
   ) {
@@ -49,16 +50,13 @@ export class ScenePanel {
 
   private show(scene: SceneMessage): void {
     this.tree.show(treeOf(scene));
-    this.tree.select(keyOf(this.model.selection));
-    const { triangles, unsupported, notes } = scene.report;
-    this.report.replaceChildren(
-      h('p', { class: 'quiet' }, `${formatCount(triangles)} triangles, ${scene.materials.length} materials`),
-    );
-    if (unsupported.length + notes.length === 0) return;
-    const lines = [
-      ...unsupported.map((u) => `${u.feature}: ${u.note}${u.materials.length ? ` (${u.materials.join(', ')})` : ''}`),
-      ...notes,
-    ];
+    const facts = `${formatCount(scene.report.triangles)} triangles, ${scene.materials.length} materials`;
+    const lines = reportLines(scene);
+    const reported = [facts, ...lines].join('\n');
+    if (reported === this.reported) return; // an unfolded report stays so
+    this.reported = reported;
+    this.report.replaceChildren(h('p', { class: 'quiet' }, facts));
+    if (lines.length === 0) return;
     this.report.append(
       h(
         'details',
@@ -68,6 +66,14 @@ export class ScenePanel {
       ),
     );
   }
+}
+
+/** What loading left out, and what else it has to say. */
+function reportLines({ report }: SceneMessage): string[] {
+  const left = report.unsupported.map(
+    (u) => `${u.feature}: ${u.note}${u.materials.length ? ` (${u.materials.join(', ')})` : ''}`,
+  );
+  return [...left, ...report.notes];
 }
 
 /** Puts the scene's file name into the bar. */
@@ -112,9 +118,18 @@ function keyOf(selection: Selection): string | null {
   }
 }
 
-function treeOf(scene: SceneMessage): TreeItem[] {
+function childrenOf(scene: SceneMessage): Map<number | undefined, number[]> {
   const children = new Map<number | undefined, number[]>();
-  scene.nodes.forEach((node, i) => children.set(node.parent, [...(children.get(node.parent) ?? []), i]));
+  scene.nodes.forEach(({ parent }, i) => {
+    const siblings = children.get(parent);
+    if (siblings) siblings.push(i);
+    else children.set(parent, [i]);
+  });
+  return children;
+}
+
+export function treeOf(scene: SceneMessage): TreeItem[] {
+  const children = childrenOf(scene);
   const nodeItem = (i: number): TreeItem => {
     const node = scene.nodes[i];
     const note =

@@ -36,6 +36,12 @@ interface Pending {
   cost: CostClass | null;
 }
 
+/** The same for edits of the same fields of the same thing; `label` tells the technique's parameters apart. */
+export function editKey(label: string, edit: Edit): string {
+  const index = 'material' in edit ? edit.material : 'light' in edit ? edit.light : 'node' in edit ? edit.node : 0;
+  return `${edit.target}/${index}/${Object.keys(edit).sort().join()}/${label}`;
+}
+
 const kMinFlushMs = 1000 / 60 - 1;
 
 /**
@@ -53,8 +59,7 @@ export class EditDesk {
 
   /** One edit; a later one of the same fields of the same thing replaces it while it waits for the display frame. */
   set(label: string, edit: Edit): void {
-    const index = 'material' in edit ? edit.material : 'light' in edit ? edit.light : 'node' in edit ? edit.node : 0;
-    const key = `${edit.target}/${index}/${Object.keys(edit).sort().join()}/${label}`;
+    const key = editKey(label, edit);
     const inputMs = this.drafts.get(key)?.inputMs ?? this.hooks.now();
     const message = { op: 'set', ...edit } as Outgoing;
     this.hooks.show(edit);

@@ -1,5 +1,3 @@
-import { hexFromLinear, linearFromHex, splitStrength } from '../math/color';
-import type { Vec3 } from '../math/vec3';
 import { h, uniqueId } from './dom';
 import { formatNumber } from './format';
 
@@ -27,10 +25,11 @@ export interface NumberOptions {
 }
 
 const kSliderSteps = 1000;
+const kArrowDirections: Record<string, 1 | -1> = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1 };
 const isBusy = (input: HTMLInputElement): boolean =>
   document.activeElement === input && input.dataset['dirty'] === 'true';
 
-function labelText(label: string, unit?: string | undefined): HTMLElement {
+export function labelText(label: string, unit?: string | undefined): HTMLElement {
   const shown = unit && unit !== '1' ? h('span', { class: 'unit' }, ` ${unit}`) : null;
   return h('span', { class: 'name' }, label, shown);
 }
@@ -44,7 +43,13 @@ function parseTyped(text: string, options: NumberOptions): number | null {
   return value;
 }
 
-function numberInput(options: NumberOptions, label: string): { input: HTMLInputElement; set(value: number): void } {
+interface NumberInput {
+  input: HTMLInputElement;
+  shown(): number;
+  set(value: number): void;
+}
+
+function numberInput(options: NumberOptions, label: string): NumberInput {
   const input = h('input', {
     type: 'text',
     inputmode: 'decimal',
@@ -88,6 +93,7 @@ function numberInput(options: NumberOptions, label: string): { input: HTMLInputE
   });
   return {
     input,
+    shown: () => shown,
     set: (value) => {
       if (!isBusy(input)) show(value);
     },
@@ -106,7 +112,7 @@ function nudgeStep(value: number, options: NumberOptions): number {
   return Math.pow(10, Math.floor(Math.log10(Math.max(Math.abs(value), 0.01))) - 1);
 }
 
-/** Slider position of a value and back; both in 0..kSliderSteps. */
+/** Slider position of a value and back; both in 0..kSliderSteps. And where an arrow key takes a whole number. */
 export function sliderScale(options: Omit<NumberOptions, 'label' | 'onInput'>) {
   const low = options.softMinimum ?? options.minimum ?? 0;
   const high = options.softMaximum ?? options.maximum ?? 1;
@@ -114,14 +120,19 @@ export function sliderScale(options: Omit<NumberOptions, 'label' | 'onInput'>) {
   const knee = (high - low) / 1000;
   const forward = (v: number) => (options.logarithmic ? Math.log1p((v - low) / knee) : v - low);
   const span = forward(high) || 1;
-  return {
-    positionOf: (value: number) => Math.round((forward(Math.min(high, Math.max(low, value))) / span) * kSliderSteps),
-    valueAt: (position: number) => {
-      const f = (position / kSliderSteps) * span;
-      const value = low + (options.logarithmic ? Math.expm1(f) * knee : f);
-      return options.integer ? Math.round(value) : Number(value.toPrecision(4));
-    },
+  const clip = (v: number) => Math.min(high, Math.max(low, v));
+  const positionOf = (value: number) => Math.round((forward(clip(value)) / span) * kSliderSteps);
+  const valueAt = (position: number) => {
+    const f = (position / kSliderSteps) * span;
+    const value = low + (options.logarithmic ? Math.expm1(f) * knee : f);
+    return options.integer ? Math.round(value) : Number(value.toPrecision(4));
   };
+  /** The next whole number, or a step of the slider where that is farther. */
+  const nextInteger = (value: number, direction: 1 | -1) => {
+    const stepped = valueAt(positionOf(value) + direction);
+    return clip(direction * (stepped - value) > 1 ? stepped : value + direction);
+  };
+  return { positionOf, valueAt, nextInteger };
 }
 
 export function numberField(options: NumberOptions): Field<number> {
@@ -158,6 +169,16 @@ export function numberField(options: NumberOptions): Field<number> {
     describeSlider(value);
     options.onInput(value);
   });
+  if (options.integer)
+    slider.addEventListener('keydown', (event) => {
+      const direction = kArrowDirections[event.key];
+      if (!direction || event.altKey || event.ctrlKey || event.metaKey) return;
+      event.preventDefault();
+      const value = scale.nextInteger(entry.shown(), direction);
+      entry.set(value);
+      moveSlider(value);
+      options.onInput(value);
+    });
   entry.input.addEventListener('change', () => {
     const value = parseTyped(entry.input.value, options);
     if (value !== null) moveSlider(value);
@@ -220,82 +241,6 @@ export function vectorField(
     set(value) {
       current = [...value];
       entries.forEach((entry, i) => entry.set(value[i] ?? 0));
-    },
-  };
-}
-
-export interface ColorOptions {
-  label: string;
-  unit?: string | undefined;
-  /** Largest component that may be edited; above 1 the field gets a strength slider of its own. */
-  maximum: number;
-  softMaximum?: number | undefined;
-  description?: string | undefined;
-  onInput(linear: Vec3): void;
-}
-
-/** A colour: the picker speaks sRGB, the numbers and the server linear Rec. 709. */
-export function colorField(options: ColorOptions): Field<Vec3> {
-  const id = uniqueId('color');
-  const bounded = options.maximum <= 1;
-  let color: Vec3 = [1, 1, 1];
-  const picker = h('input', { type: 'color', id });
-  const changed = (linear: Vec3) => {
-    color = linear;
-    show();
-    options.onInput(linear);
-  };
-  const numbers = vectorField({
-    label: `${options.label}, linear`,
-    components: ['R', 'G', 'B'],
-    minimum: 0,
-    maximum: options.maximum,
-    onInput: ([r = 0, g = 0, b = 0]) => changed([r, g, b]),
-  });
-  const strengthField = bounded
-    ? null
-    : numberField({
-        label: 'Strength',
-        minimum: 0,
-        maximum: options.maximum,
-        softMaximum: options.softMaximum,
-        logarithmic: true,
-        onInput: (strength) => {
-          const [r, g, b] = splitStrength(color).color;
-          changed([r * strength, g * strength, b * strength]);
-        },
-      });
-  const show = () => {
-    const unlit = Math.max(...color) === 0;
-    if (document.activeElement !== picker)
-      picker.value = hexFromLinear(bounded || unlit ? color : splitStrength(color).color);
-    numbers.set(color);
-    strengthField?.set(splitStrength(color).strength);
-  };
-  picker.addEventListener('input', () => {
-    const linear = linearFromHex(picker.value);
-    if (bounded || Math.max(...linear) === 0) {
-      changed(linear);
-      return;
-    }
-    const strength = splitStrength(color).strength || 1;
-    const [r, g, b] = splitStrength(linear).color;
-    changed([r * strength, g * strength, b * strength]);
-  });
-  numbers.element.classList.remove('field');
-  numbers.element.querySelector('.name')?.remove();
-  return {
-    element: h(
-      'div',
-      { class: 'field color', title: options.description },
-      h('label', { for: id }, labelText(options.label, options.unit && options.unit !== '1' ? options.unit : 'linear')),
-      picker,
-      numbers.element,
-      strengthField?.element,
-    ),
-    set(value) {
-      color = value;
-      show();
     },
   };
 }

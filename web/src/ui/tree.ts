@@ -13,6 +13,7 @@ export interface TreeItem {
 /** An ARIA tree: one tab stop, arrows walk and fold, Enter and Space select. */
 export class Tree {
   readonly element: HTMLUListElement;
+  private items: readonly TreeItem[] = [];
   private rows = new Map<string, HTMLLIElement>();
   private folded = new Set<string>();
   private known = new Set<string>();
@@ -27,23 +28,32 @@ export class Tree {
     this.element.addEventListener('click', (event) => this.handleClick(event));
   }
 
-  /** Replaces the items; folding, selection and focus stay where their keys still exist. */
+  /** Shows items unless they look as those shown; folding, selection and focus stay where their keys still exist. */
   show(items: readonly TreeItem[]): void {
+    if (sameItems(items, this.items)) return;
+    this.items = items;
     const focused = this.keyOf(document.activeElement);
     this.rows.clear();
     this.element.replaceChildren(...items.map((item) => this.makeRow(item, 1)));
-    this.select(this.selected);
-    if (focused) this.rows.get(focused)?.focus();
+    const selected = this.markSelected();
+    const again = focused === null ? undefined : this.rows.get(focused);
+    this.setTabStop(again ?? (selected ? visibleAt(selected) : (this.visibleRows()[0] ?? null)));
+    again?.focus({ preventScroll: true });
   }
 
-  /** Marks `key` as selected without telling anybody; its row becomes the tab stop and comes into view. */
+  /** Marks `key` as selected without telling anybody; a row that was not before becomes the tab stop and is shown. */
   select(key: string | null): void {
+    if (key === this.selected) return;
     this.selected = key;
-    for (const [k, row] of this.rows) row.setAttribute('aria-selected', String(k === key));
-    const row = key === null ? undefined : this.rows.get(key);
+    const row = this.markSelected();
     if (row) this.unfoldAbove(row);
     this.setTabStop(row ?? this.visibleRows()[0] ?? null);
     row?.scrollIntoView({ block: 'nearest' });
+  }
+
+  private markSelected(): HTMLLIElement | undefined {
+    for (const [key, row] of this.rows) row.setAttribute('aria-selected', String(key === this.selected));
+    return this.selected === null ? undefined : this.rows.get(this.selected);
   }
 
   private makeRow(item: TreeItem, level: number): HTMLLIElement {
@@ -56,9 +66,8 @@ export class Tree {
         role: 'treeitem',
         'data-key': item.key,
         'aria-level': level,
-        'aria-selected': false,
         tabindex: -1,
-        'aria-expanded': hasChildren ? !this.folded.has(item.key) : null,
+        'aria-expanded': hasChildren ? String(!this.folded.has(item.key)) : null,
       },
       h(
         'div',
@@ -150,6 +159,30 @@ export class Tree {
 
 function parentRow(row: HTMLLIElement): HTMLLIElement | undefined {
   return row.parentElement?.closest<HTMLLIElement>('[role=treeitem]') ?? undefined;
+}
+
+/** The row, or that of the outermost folded group that hides it. */
+function visibleAt(row: HTMLLIElement): HTMLLIElement {
+  let shown = row;
+  for (let up = parentRow(row); up; up = parentRow(up)) if (up.getAttribute('aria-expanded') === 'false') shown = up;
+  return shown;
+}
+
+/** True when both lists look the same. */
+export function sameItems(a: readonly TreeItem[], b: readonly TreeItem[]): boolean {
+  return (
+    a.length === b.length &&
+    a.every((item, i) => {
+      const other = b[i];
+      return (
+        other !== undefined &&
+        item.key === other.key &&
+        item.label === other.label &&
+        item.note === other.note &&
+        sameItems(item.children, other.children)
+      );
+    })
+  );
 }
 
 function byDocument(a: Node, b: Node): number {

@@ -6,23 +6,24 @@ import {
   kSubprotocol,
   ProtocolError,
   type ClientMessage,
+  type FrameHeader,
   type ServerMessage,
 } from '../protocol/messages.gen';
 import { backoffMs } from './backoff';
+import { Patience } from './patience';
 import { asBearer, explainClose, probeServer } from './refusal';
 
 const kRefusedRetryMs = 10_000;
 const kHandshakeMs = 6_000;
 const kPingMs = 5_000;
-// A server that says nothing for so long, not even pong, is taken for lost although TCP still hopes.
-const kSilentMs = 15_000;
 
 export interface ConnectionHooks {
   onState(state: ConnectionState): void;
   /** A new connection was made; nothing of an older one is valid any more. */
   onOpen(): void;
   onMessage(message: ServerMessage): void;
-  onBinary(data: ArrayBuffer): void;
+  /** Takes a binary message apart; null when it is malformed. */
+  onBinary(data: ArrayBuffer): FrameHeader | null;
   onFault(text: string): void;
   /** The client's hello, without seq. */
   hello(): Outgoing;
@@ -37,6 +38,7 @@ export class Connection {
   private wakeTimer: ReturnType<typeof setTimeout> | undefined;
   private pulseTimer: ReturnType<typeof setInterval> | undefined;
   private lastHeardMs = 0;
+  private patience = new Patience();
   private lastError: { code: string; message: string } | null = null;
   private paused = false;
 
@@ -53,6 +55,7 @@ export class Connection {
     this.hooks.onState({ kind: 'connecting' });
     this.seq = 0;
     this.lastError = null;
+    this.patience = new Patience();
     const protocols = this.token ? [kSubprotocol, asBearer(this.token)] : [kSubprotocol];
     const socket = new WebSocket(this.url, protocols);
     socket.binaryType = 'arraybuffer';
@@ -100,7 +103,8 @@ export class Connection {
   private receive(data: string | ArrayBuffer): void {
     this.lastHeardMs = nowMs();
     if (typeof data !== 'string') {
-      this.hooks.onBinary(data);
+      const header = this.hooks.onBinary(data);
+      if (header) this.patience.onFrame(header);
       return;
     }
     let message: ServerMessage;
@@ -112,6 +116,7 @@ export class Connection {
       this.hooks.onFault(`the server sent a message that cannot be read: ${String(reason)}`);
       return;
     }
+    this.patience.onMessage(message);
     if (message.op === 'hello') this.greet();
     if (message.op === 'error') this.lastError = message;
     this.hooks.onMessage(message);
@@ -122,7 +127,7 @@ export class Connection {
     this.attempt = 0;
     clearTimeout(this.wakeTimer);
     this.pulseTimer = setInterval(() => {
-      if (nowMs() - this.lastHeardMs > kSilentMs) this.abandon();
+      if (nowMs() - this.lastHeardMs > this.patience.limitMs()) this.abandon();
       else this.transmit({ op: 'ping' });
     }, kPingMs);
     this.hooks.onState({ kind: 'connected' });

@@ -18,7 +18,7 @@ export interface DecodeHooks<Picture> {
   failed(frame: EncodedFrame, reason: unknown): void;
 }
 
-type Revisions = Pick<FrameHeader, 'sceneRevision' | 'viewRevision'>;
+export type Revisions = Pick<FrameHeader, 'sceneRevision' | 'viewRevision'>;
 
 /** True when `a` shows an older scene or an older view than `b`. */
 export const isOlder = (a: Revisions, b: Revisions): boolean =>

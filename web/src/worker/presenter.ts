@@ -42,6 +42,11 @@ export class Presenter {
     picture.close();
   }
 
+  /** What the canvas shows, as a PNG file. */
+  png(): Promise<Blob> {
+    return this.canvas.convertToBlob({ type: 'image/png' });
+  }
+
   /** SHA-256 over the canvas' RGBA bytes, row 0 on top. Test hook. */
   async hash(): Promise<PixelHash> {
     const { width, height } = this.canvas;

@@ -2,7 +2,7 @@
 /** The stream: owns the socket, decodes frames, draws them on the picture's canvas and gives their credits back. */
 import type { FrameReport, Outgoing, ToPage, ToWorker } from '../channel';
 import { nowMs } from '../clock';
-import { decodeFrame, kFrameHeaderBytes, kVersion } from '../protocol/messages.gen';
+import { decodeFrame, kFrameHeaderBytes, kVersion, type FrameHeader } from '../protocol/messages.gen';
 import { Connection } from './connection';
 import { DecodeQueue, type EncodedFrame } from './decode_queue';
 import { Presenter } from './presenter';
@@ -60,14 +60,16 @@ function start(canvas: OffscreenCanvas, url: string, token: string | null, clien
 }
 
 /** Takes a binary message apart. What is malformed is told and not acknowledged: there is no frame id to trust. */
-function receiveBinary(data: ArrayBuffer, queue: DecodeQueue<ImageBitmap>): void {
+function receiveBinary(data: ArrayBuffer, queue: DecodeQueue<ImageBitmap>): FrameHeader | null {
   const receivedMs = nowMs();
   try {
     const { header, payload } = decodeFrame(data);
     if (header.kind === 'file') tell({ type: 'file', header, bytes: payload }, [data]);
     else queue.push({ header, payload, receivedMs });
+    return header;
   } catch (reason) {
     fault(`the server sent a broken frame: ${String(reason)}`);
+    return null;
   }
 }
 
@@ -78,6 +80,16 @@ function send(ticket: number, message: Outgoing): void {
   } catch (reason) {
     tell({ type: 'sent', ticket, seq: null, reason: String(reason) });
   }
+}
+
+async function sendPng(ticket: number): Promise<void> {
+  let png: Blob | null = null;
+  try {
+    png = (await presenter?.png()) ?? null;
+  } catch (reason) {
+    fault(`the picture could not be written as PNG: ${String(reason)}`);
+  }
+  tell({ type: 'png', ticket, png });
 }
 
 function setHidden(hidden: boolean): void {
@@ -100,6 +112,9 @@ scope.onmessage = async ({ data }: MessageEvent<ToWorker>) => {
       break;
     case 'hidden':
       setHidden(data.hidden);
+      break;
+    case 'png':
+      await sendPng(data.ticket);
       break;
     case 'hash':
       if (presenter) tell({ type: 'hash', ticket: data.ticket, hash: await presenter.hash() });

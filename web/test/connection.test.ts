@@ -1,0 +1,69 @@
+import { readFileSync } from 'node:fs';
+import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
+import type { ConnectionState } from '../src/channel';
+import { encodeServer, type FrameHeader } from '../src/protocol/messages.gen';
+import { Connection } from '../src/worker/connection';
+
+const kGolden = new URL('../../protocol/golden/', import.meta.url);
+const helloOfServer = readFileSync(new URL('server_hello.jsonl', kGolden), 'utf8').split('\n')[0] ?? '';
+
+/** A socket that says only what a test lets it say. */
+class FakeSocket {
+  static readonly OPEN = 1;
+  static newest: FakeSocket;
+  readyState = FakeSocket.OPEN;
+  onopen?: () => void;
+  onmessage?: (event: { data: string | ArrayBuffer }) => void;
+  constructor() {
+    FakeSocket.newest = this;
+  }
+  send(): void {}
+  close(): void {}
+}
+
+function connect() {
+  const states: ConnectionState['kind'][] = [];
+  const connection = new Connection('ws://x/ws', null, {
+    onState: (state) => void states.push(state.kind),
+    onOpen: () => {},
+    onMessage: () => {},
+    onBinary: () => ({ kind: 'file' }) as FrameHeader,
+    onFault: () => {},
+    hello: () => ({ op: 'hello', version: 1, client: 'test' }),
+  });
+  connection.open();
+  const hear = (data: string | ArrayBuffer) => FakeSocket.newest.onmessage?.({ data });
+  FakeSocket.newest.onopen?.();
+  hear(helloOfServer);
+  return { states, hear };
+}
+
+describe('Connection', () => {
+  beforeEach(() => {
+    vi.useFakeTimers();
+    vi.stubGlobal('WebSocket', FakeSocket);
+  });
+  afterEach(() => {
+    vi.useRealTimers();
+    vi.unstubAllGlobals();
+  });
+
+  it('gives up a server that falls silent', () => {
+    const { states } = connect();
+    expect(states).toEqual(['connecting', 'connected']);
+    vi.advanceTimersByTime(15_000);
+    expect(states.at(-1)).toBe('connected');
+    vi.advanceTimersByTime(5_000);
+    expect(states.at(-1)).toBe('reconnecting');
+  });
+
+  it('waits for a file that was told of, and no longer once it is here', () => {
+    const { states, hear } = connect();
+    hear(encodeServer({ op: 'saved', seq: 2, bytes: 65_536 * 60, encoding: 'exr' }));
+    vi.advanceTimersByTime(70_000);
+    expect(states.at(-1)).toBe('connected');
+    hear(new ArrayBuffer(0));
+    vi.advanceTimersByTime(20_000);
+    expect(states.at(-1)).toBe('reconnecting');
+  });
+});
