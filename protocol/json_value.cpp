@@ -29,7 +29,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     auto& members = std::get<JsonValue::Object>(m_open.back()->value);
     const auto same = [&](const auto& member) { return member.first == name; };
     if (std::any_of(members.begin(), members.end(), same)) return fail("bad-message", "member \"" + name + "\" appears twice");
-    if (members.size() >= kMaxMembers) return fail("limit", "an object has more than 4096 members");
+    if (members.size() >= kMaxMembers) return fail("limit", "an object has more than " + std::to_string(kMaxMembers) + " members");
     members.emplace_back(std::move(name), JsonValue{});
     return true;
   }
@@ -42,7 +42,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
-  static constexpr size_t kMaxMembers = 4096;  // keeps the search for doubles cheap
+  static constexpr size_t kMaxMembers = 256;  // keeps the search for doubles cheap
 
   bool fail(const char* code, std::string message) {
     error = {code, std::move(message), ""};

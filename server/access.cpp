@@ -96,6 +96,12 @@ std::string_view hostWithoutPort(std::string_view authority) {
   return authority.substr(0, colon);
 }
 
+std::string tokenCookieFor(std::string_view host) {
+  const std::string_view port = host.substr(hostWithoutPort(host).size());
+  const bool number = port.size() > 1 && std::all_of(port.begin() + 1, port.end(), [](unsigned char c) { return std::isdigit(c); });
+  return number ? "limn-token-" + std::string(port.substr(1)) : "limn-token";
+}
+
 bool isIpLiteral(std::string_view host) {
   if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
   const std::string text(host);
@@ -112,12 +118,13 @@ bool isLoopbackName(std::string_view host) {
 bool tokenMatches(const AccessPolicy& policy, const RequestHeaders& headers) {
   if (policy.token.empty()) return true;
   bool matches = false;
+  const std::string cookie = tokenCookieFor(headers.host);
   constexpr std::string_view kBearer = "bearer ";
   if (lower(headers.authorization).starts_with(kBearer))
     matches |= equalInConstantTime(policy.token, trim(std::string_view(headers.authorization).substr(kBearer.size())));
   for (const std::string_view part : split(headers.cookie, ';')) {
     const size_t equals = part.find('=');
-    if (equals != std::string_view::npos && part.substr(0, equals) == kTokenCookie)
+    if (equals != std::string_view::npos && part.substr(0, equals) == cookie)
       matches |= equalInConstantTime(policy.token, part.substr(equals + 1));
   }
   for (const std::string_view part : split(headers.subprotocols, ','))

@@ -5,7 +5,9 @@
 
 namespace limn::server {
 
-constexpr const char* kTokenCookie = "limn-token";
+/// Name of the cookie that holds the token, for the Host that a browser asked: browsers keep cookies by host and path
+/// alone, so servers on two ports of one host need two names.
+std::string tokenCookieFor(std::string_view host);
 
 /// Who may speak to the daemon. Set once, before the loop runs.
 struct AccessPolicy {

@@ -1,5 +1,8 @@
 #include "server/client_session.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "protocol/frame.hpp"
 #include "server/convert.hpp"
 
@@ -13,11 +16,14 @@ std::string headerBytes(const protocol::FrameHeader& header) {
   return bytes;
 }
 
+size_t counted(const OutgoingMessage& message) { return std::min(message.size(), ClientSession::kMostCountedBytes); }
+
 }  // namespace
 
 bool ClientSession::push(OutgoingMessage message) {
-  if (m_queuedBytes > 0 && m_queuedBytes + message.size() > kMaxQueuedBytes) return false;
-  m_queuedBytes += message.size();
+  const size_t bytes = counted(message);
+  if (m_queuedBytes + bytes > kMaxQueuedBytes) return false;
+  m_queuedBytes += bytes;
   m_queue.push_back(std::move(message));
   return true;
 }
@@ -40,7 +46,11 @@ std::optional<OutgoingMessage> ClientSession::takeQueued() {
   if (m_queue.empty()) return std::nullopt;
   OutgoingMessage message = std::move(m_queue.front());
   m_queue.pop_front();
-  m_queuedBytes -= message.size();
+  m_queuedBytes -= counted(message);
+  if (message.body) {
+    m_fileBytes += message.size();
+    savingSeq = 0;
+  }
   return message;
 }
 
@@ -65,7 +75,7 @@ OutgoingMessage ClientSession::takeFrame(double now) {
   header.crc32c = frame->crc32c;
   ++framesSent;
   OutgoingMessage message{true, headerBytes(header), frame->bytes};
-  flow.sent(header.frameId, message.size(), now);
+  flow.sent(header.frameId, message.size() + std::exchange(m_fileBytes, 0), now);
   return message;
 }
 

@@ -21,7 +21,8 @@ struct ErrorWait {
 /// What the daemon knows of one connection. Loop thread.
 class ClientSession {
  public:
-  static constexpr size_t kMaxQueuedBytes = 16u << 20;  ///< then a reader is too slow; one longer alone may wait
+  static constexpr size_t kMaxQueuedBytes = 16u << 20;  ///< then a reader is too slow
+  static constexpr size_t kMostCountedBytes = kMaxQueuedBytes / 4;  ///< of one message: few long ones may wait, not many
   static constexpr uint32_t kMaxUnanswered = 2048;      ///< requests on their way through the renderer
 
   ClientSession(ConnectionId id, double now) : m_id(id), m_openedAt(now) {}
@@ -31,7 +32,7 @@ class ClientSession {
 
   /// Queues a text message. False when the reader is too slow.
   [[nodiscard]] bool queue(const protocol::ServerMessage& message);
-  /// Queues a file as a binary message.
+  /// Queues a file as a binary message. False as above.
   [[nodiscard]] bool queueFile(uint32_t seq, std::shared_ptr<const std::vector<uint8_t>> file);
   /// The oldest queued message.
   std::optional<OutgoingMessage> takeQueued();
@@ -58,7 +59,7 @@ class ClientSession {
   uint32_t lastSeq = 0, helloSeq = 0;
   uint32_t unanswered = 0;
   uint32_t readingSeq = 0;             ///< of the load or edit whose file the loader reads; 0: none
-  bool saving = false;
+  uint32_t savingSeq = 0;              ///< of the save whose file is not being written yet; 0: none
   std::vector<ErrorWait> errorWaits;
   uint32_t lastEditSeq = 0;            ///< of an edit that changes something, as far as is known
   uint32_t lastEffectiveSeq = 0;       ///< of an acknowledged edit that did
@@ -78,7 +79,8 @@ class ClientSession {
   ConnectionId m_id;
   double m_openedAt;
   std::deque<OutgoingMessage> m_queue;
-  size_t m_queuedBytes = 0;
+  size_t m_queuedBytes = 0;            ///< as they count
+  size_t m_fileBytes = 0;              ///< written since the last picture, which comes after them
 };
 
 }  // namespace limn::server

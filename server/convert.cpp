@@ -124,6 +124,15 @@ protocol::Ack toWire(const EditAck& ack) {
   return {ack.to.seq, same<protocol::CostClass>(ack.cost), ack.sceneRevision, ack.viewRevision, ack.superseded};
 }
 
+protocol::Waited toWire(const WaitReply& reply) {
+  protocol::Waited wire{reply.to.seq, reply.steps, {reply.filmHash}, finite(reply.estimatedError), {}, {}};
+  if (wire.estimatedError) {
+    wire.errorLow = reply.errorLow;
+    wire.errorHigh = finite(reply.errorHigh);
+  }
+  return wire;
+}
+
 protocol::Picked toWire(const PickReply& reply) {
   protocol::Picked wire;
   wire.seq = reply.to.seq;

@@ -18,6 +18,7 @@ protocol::SceneMessage toWire(const SceneSummary& scene, protocol::SceneCause ca
 protocol::Status toWire(const Status& status);
 protocol::Ack toWire(const EditAck& ack);
 protocol::Picked toWire(const PickReply& reply);
+protocol::Waited toWire(const WaitReply& reply);
 std::vector<protocol::Technique> toWire(const std::vector<TechniqueInfo>& techniques);
 
 /// The header of a picture for one client, but for what only the caller knows: encoding, quality, replaced, encodeMs,

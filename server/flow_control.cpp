@@ -49,7 +49,10 @@ double FlowControl::shortestDelay(double now) {
   return m_delays.front().seconds;
 }
 
-double FlowControl::oldestAge(double now) const { return m_inFlight.empty() ? 0.0 : now - m_inFlight.front().at; }
+bool FlowControl::overdue(double now, double seconds) const {
+  if (m_inFlight.empty()) return false;
+  return now - m_inFlight.front().at > seconds + double(bytesInFlight()) / kSlowBytesPerSecond;
+}
 
 EncodingKey FlowControl::encodingFor(Phase phase, bool takesJpeg, bool takesPng) const {
   if (takesPng && (phase == Phase::converged || !takesJpeg)) return kLossless;

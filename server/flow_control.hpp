@@ -11,18 +11,21 @@ namespace limn::server {
 class FlowControl {
  public:
   static constexpr size_t kFramesInFlight = 2;
+  static constexpr double kSlowBytesPerSecond = 65536.0;
   enum class Ack { taken, old, neverSent };
 
   bool hasCredit() const { return m_inFlight.size() < kFramesInFlight; }
   size_t inFlight() const { return m_inFlight.size(); }
   size_t bytesInFlight() const;
 
+  /// `bytes` are those of the frame and of whatever the client has to take in before it.
   void sent(uint32_t frameId, size_t bytes, double now);
   /// A frame is acknowledged after it was shown or dropped. Credits come back one a frame; `old` for one twice
   /// acknowledged.
   Ack acknowledged(uint32_t frameId, double now);
-  /// [s] since the oldest frame in flight was sent; 0 when nothing is in flight.
-  double oldestAge(double now) const;
+  /// Whether the oldest frame in flight should have been acknowledged: within `seconds` and the time that all bytes in
+  /// flight take over a slow line, since one picture at rest may be many megabytes.
+  bool overdue(double now, double seconds) const;
   /// [s] from sending a frame to its acknowledgement, beyond the shortest one seen of late; smoothed.
   double lag() const { return m_lag; }
 

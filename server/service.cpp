@@ -28,7 +28,8 @@ Service::Service(ServiceConfig config, Mailbox& mailbox, FrameSlot& frames, Stat
       m_mailbox(mailbox),
       m_frames(frames),
       m_replies(replies),
-      m_aloneSince(nowSeconds()) {}
+      m_aloneSince(nowSeconds()),
+      m_begunAt(m_aloneSince) {}
 
 Result<std::unique_ptr<Service>> Service::open(ServiceConfig config, Mailbox& mailbox, FrameSlot& frames,
                                                StatusQueue& replies) {
@@ -47,9 +48,13 @@ Result<std::unique_ptr<Service>> Service::open(ServiceConfig config, Mailbox& ma
 
 Service::~Service() {
   // The workers wake the transport: they end first.
+  finishWork();
+  m_transport.reset();
+}
+
+void Service::finishWork() {
   m_encoder.reset();
   m_loader.reset();
-  m_transport.reset();
 }
 
 void Service::setReady(bool ready) {
@@ -71,6 +76,7 @@ void Service::onClose(ConnectionId id) {
   if (const ClientSession* session = find(id)) m_counters.framesReplaced += session->framesReplaced;
   m_sessions.erase(id);
   m_editors.erase(id);
+  m_mailbox.push(LeaveRequest{id});  // a full box only keeps a few words of somebody who is gone
   if (m_sessions.empty()) m_aloneSince = nowSeconds();
   tellWatched();
 }
@@ -108,6 +114,8 @@ void Service::onTick() {
     for (auto& [id, session] : m_sessions)
       if (session.joined) sendStatus(session, status);
   }
+  tellWatched();
+  confirmJournal(now);
   distributeFrames();
   const bool leave =
       m_config.idleExitSeconds > 0.0 && m_sessions.empty() && now - m_aloneSince > m_config.idleExitSeconds;
@@ -127,7 +135,7 @@ void Service::checkTimers(ClientSession& session, double now) {
   if (!session.greeted && session.age(now) > m_config.helloSeconds) {
     ++m_counters.helloTimeouts;
     closeSession(session, CloseCode::policy, "no hello came");
-  } else if (session.flow.oldestAge(now) > m_config.ackSeconds) {
+  } else if (session.flow.overdue(now, m_config.ackSeconds)) {
     ++m_counters.ackTimeouts;
     closeSession(session, CloseCode::policy, "acknowledgements are missing");
   }
@@ -146,6 +154,7 @@ void Service::sendError(ClientSession& session, uint32_t seq, const Error& error
   message.code = wireCode(error.code);
   message.message = error.message;
   if (!error.place.empty()) message.place = error.place;
+  else if (seq != 0) message.place = "seq " + std::to_string(seq);
   send(session, message);
 }
 
@@ -167,9 +176,7 @@ void Service::dropSlowReader(ClientSession& session) {
 void Service::tellWatched() {
   bool watched = false;
   for (const auto& [id, session] : m_sessions) watched |= session.greeted && session.needsPictures() && !session.closing;
-  if (watched == m_watched) return;
-  m_watched = watched;
-  m_mailbox.push(WatchRequest{watched});
+  if (watched != m_watched && m_mailbox.push(WatchRequest{watched})) m_watched = watched;  // or at the next tick
 }
 
 }  // namespace limn::server

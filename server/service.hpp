@@ -13,6 +13,7 @@
 #include "renderer/techniques/technique_info.hpp"
 #include "server/client_session.hpp"
 #include "server/encode_worker.hpp"
+#include "server/journal.hpp"
 #include "server/loader_worker.hpp"
 #include "server/site.hpp"
 #include "server/transport.hpp"
@@ -29,6 +30,7 @@ struct ServiceConfig {
   std::filesystem::path assetRoot;
   AssetReaders readers;
   std::span<const SiteFile> site;
+  std::shared_ptr<Journal> journal;        ///< of accepted edits; null: they end with the process
   double helloSeconds = 5.0;               ///< from the handshake to the client's hello
   double ackSeconds = 10.0;                ///< without an acknowledgement while frames are in flight
   double idleExitSeconds = 0.0;            ///< without a client, then drain; 0: never
@@ -50,9 +52,13 @@ class Service : private TransportHandler {
                                                StatusQueue& replies);
   ~Service() override;
 
+  /// Asks the renderer for what a journal kept, as if a client did. Before run().
+  void takeUp(const std::vector<protocol::ClientMessage>& messages);
   uint16_t port() const { return m_transport->port(); }
   void run() { m_transport->run(); }       ///< the loop thread is the one that calls this; returns after a drain
   void drain() { m_transport->drain(); }   ///< any thread
+  /// After run(): waits for a picture that is being encoded and a file that is being read, which may take long.
+  void finishWork();
   void setReady(bool ready);               ///< any thread
 
  private:
@@ -84,8 +90,11 @@ class Service : private TransportHandler {
   void askForScene(ClientSession& session);
   /// `batch`: the edits stand in a list of the message's, not in the message itself.
   void edit(ClientSession& session, uint32_t seq, const std::vector<protocol::Edit>& edits, bool batch = false);
+  /// `view`: as the edits before leave it.
+  static void addEdit(EditJob& job, const protocol::Edit& wire, View& view);
   bool askLoader(ClientSession& session, LoaderJob job);
-  void ask(ClientSession& session, uint32_t seq, Request request);
+  /// False, with an error told, when too much waits already.
+  bool ask(ClientSession& session, uint32_t seq, Request request);
 
   // service_replies.cpp: what the renderer says
   friend struct ReplyHandler;
@@ -98,9 +107,17 @@ class Service : private TransportHandler {
   void sendStatus(ClientSession& session, const protocol::Status& status);
   void checkErrorWaits(ClientSession& session, const FrameInfo& info);
 
+  // service_journal.cpp: what outlives the process
+  void rememberUnacknowledged(const Origin& from, protocol::ClientMessage message);
+  void noteAccepted(const Origin& from);
+  void noteRefused(const ErrorReply& reply) const;
+  void keepAccepted();
+  void confirmJournal(double now);
+
   // service_frames.cpp: pictures
   void distributeFrames();
   void offer(const std::shared_ptr<const EncodedFrame>& frame);
+  void give(ClientSession& session, const std::shared_ptr<const EncodedFrame>& frame);
 
   // service_http.cpp
   std::string metrics() const;
@@ -120,12 +137,17 @@ class Service : private TransportHandler {
   ServiceCounters m_counters;
   bool m_watched = false;
   double m_aloneSince = 0.0;               ///< [s] no client since then
+  const double m_begunAt;                  ///< [s]
 
   View m_view;                             ///< as the edits sent so far leave it; completes lenses of camera edits
   std::set<std::pair<ConnectionId, uint32_t>> m_viewEdits;  ///< client and seq of those that were not answered yet
   std::set<std::pair<ConnectionId, uint32_t>> m_batches;    ///< the same
+  std::map<std::pair<ConnectionId, uint32_t>, protocol::ClientMessage> m_unacknowledged;  ///< for the journal: the same
+  std::vector<protocol::ClientMessage> m_accepted;          ///< since the journal was last written
+  bool m_journalFails = false;             ///< and that was told
   std::set<ConnectionId> m_editors;        ///< edited since the others were last told
   bool m_describing = false;               ///< a describe of our own is on its way
+  uint32_t m_loadedRevision = 0;           ///< of the scene that was loaded last; pictures below it show another
   bool m_viewDoubtful = true;              ///< an edit was refused, or nothing is known yet
   double m_lastBroadcast = 0.0, m_lastStatus = 0.0;  ///< [s]
 };

@@ -1,3 +1,4 @@
+#include "server/convert.hpp"
 #include "server/service.hpp"
 
 namespace limn::server {
@@ -20,10 +21,7 @@ void Service::distributeFrames() {
     const EncodingKey key = session.encodingFor(*newest);
     const auto made = m_encoded.find(key);
     if (made == m_encoded.end()) wanted.insert(key);
-    else if (session.joined) {
-      session.take(made->second);
-      m_transport->wantWrite(id);
-    }
+    else if (session.joined) give(session, made->second);
   }
   if (!wanted.empty()) m_encoder->want(newest, std::move(wanted));
 }
@@ -32,9 +30,15 @@ void Service::offer(const std::shared_ptr<const EncodedFrame>& encoded) {
   for (auto& [id, session] : m_sessions) {
     if (!session.joined || !session.wantsFrame() || !session.isNew(*encoded->frame)) continue;
     if (session.encodingFor(*encoded->frame) != encoded->key) continue;
-    session.take(encoded);
-    m_transport->wantWrite(id);
+    give(session, encoded);
   }
+}
+
+// A picture at rest may be long on its way: that it comes is told before.
+void Service::give(ClientSession& session, const std::shared_ptr<const EncodedFrame>& encoded) {
+  if (encoded->key.codec == ImageCodec::png) sendStatus(session, toWire(m_replies.status()));
+  session.take(encoded);
+  m_transport->wantWrite(session.id());
 }
 
 }  // namespace limn::server

@@ -54,7 +54,7 @@ HttpReply Service::onHttp(const HttpRequest& asked) {
   if (path == "/" && !token.empty() && !access.token.empty()) {
     if (!equalInConstantTime(access.token, token)) return plain(401, "the token is wrong\n");
     HttpReply reply = redirect(access.basePath + "/");
-    reply.headers.emplace_back("set-cookie:", std::string(kTokenCookie) + "=" + token +
+    reply.headers.emplace_back("set-cookie:", tokenCookieFor(request.headers.host) + "=" + token +
                                                   "; HttpOnly; SameSite=Strict; Path=" + access.basePath + "/");
     return reply;
   }

@@ -26,6 +26,8 @@ std::vector<std::string> stageNames(const std::vector<StageTime>& stages) {
   return names;
 }
 
+std::string placeIn(uint32_t seq, const std::string& pointer) { return "seq " + std::to_string(seq) + " " + pointer; }
+
 /// What a log may hold of a text that a stranger chose.
 std::string printable(std::string_view text) {
   std::string out;
@@ -47,6 +49,7 @@ struct MessageHandler {
   void operator()(const protocol::Load& load) const {
     const bool taken = service.askLoader(session, SceneJob{{session.id(), load.seq}, load.uri, nowSeconds()});
     service.m_counters.loads += taken;
+    if (taken) service.rememberUnacknowledged({session.id(), load.seq}, load);
   }
   void operator()(const protocol::SetCamera& camera) const {
     service.edit(session, camera.seq, {protocol::CameraEdit{camera.view}});
@@ -68,17 +71,19 @@ struct MessageHandler {
       if (std::find(service.m_config.layers.begin(), service.m_config.layers.end(), layer) ==
           service.m_config.layers.end())
         return service.sendError(session, save.seq,
-                                 error(protocol::kErrorUnknownName, "no such layer: " + printable(layer)));
-    if (session.saving)
+                                 error(protocol::kErrorUnknownName, "no such layer: " + printable(layer),
+                                       placeIn(save.seq, "/layers")));
+    if (session.savingSeq != 0)
       return service.sendError(session, save.seq, error(protocol::kErrorBusy, "a file is being made already"));
-    session.saving = true;
-    service.ask(session, save.seq, SaveRequest{{session.id(), save.seq}, layers});
+    if (service.ask(session, save.seq, SaveRequest{{session.id(), save.seq}, layers})) session.savingSeq = save.seq;
   }
   void operator()(const protocol::Describe& describe) const {
     service.ask(session, describe.seq, DescribeRequest{{session.id(), describe.seq}});
   }
   void operator()(const protocol::Wait& wait) const {
     if (wait.error && !wait.steps) {
+      if (session.unanswered >= ClientSession::kMaxUnanswered)
+        return service.sendError(session, wait.seq, error(protocol::kErrorBusy, "too many requests wait"));
       session.errorWaits.push_back({wait.seq, *wait.error, false});
       ++session.unanswered;
       service.tellWatched();
@@ -156,27 +161,33 @@ void Service::askForScene(ClientSession& session) {
   ++session.unanswered;
 }
 
+void Service::addEdit(EditJob& job, const protocol::Edit& wire, View& view) {
+  const auto* sky = std::get_if<protocol::EnvironmentEdit>(&wire);
+  if (sky && sky->image && !sky->image->empty()) job.images.push_back({job.request.edits.size(), *sky->image});
+  job.request.edits.push_back(editFromWire(wire, view));
+}
+
 void Service::edit(ClientSession& session, uint32_t seq, const std::vector<protocol::Edit>& edits, bool batch) {
-  EditRequest request{{session.id(), seq}, {}, nowSeconds()};
+  EditJob job{{{session.id(), seq}, {}, nowSeconds()}, {}};
   View view = m_view;
   bool moves = false;
-  std::vector<ImageUse> images;
+  protocol::Batch whole{seq, {}};          // with every field that the renderer completes
   for (const protocol::Edit& wire : edits) {
     const auto* size = std::get_if<protocol::ImageEdit>(&wire);
     if (size && std::max(size->width, size->height) > m_config.maxImageSide)
       return sendError(session, seq,
                        error(protocol::kErrorOutOfRange,
                              "pictures have at most " + std::to_string(m_config.maxImageSide) + " pixels a side",
-                             "seq " + std::to_string(seq)));
-    moves |= std::holds_alternative<protocol::CameraEdit>(wire);
-    const auto* sky = std::get_if<protocol::EnvironmentEdit>(&wire);
-    if (sky && sky->image && !sky->image->empty()) images.push_back({request.edits.size(), *sky->image});
-    request.edits.push_back(editFromWire(wire, view));
+                             placeIn(seq, (batch ? "/edits/" + std::to_string(whole.edits.size()) : std::string()) +
+                                              (size->width > m_config.maxImageSide ? "/width" : "/height"))));
+    addEdit(job, wire, view);
+    const bool isView = std::holds_alternative<protocol::CameraEdit>(wire);
+    whole.edits.push_back(isView ? protocol::Edit(protocol::CameraEdit{toWire(view)}) : wire);
+    moves |= isView;
   }
-  const uint32_t before = session.unanswered;
-  if (images.empty()) ask(session, seq, std::move(request));
-  else askLoader(session, EditJob{std::move(request), std::move(images)});
-  if (session.unanswered == before) return;
+  const bool taken = job.images.empty() ? ask(session, seq, std::move(job.request)) : askLoader(session, std::move(job));
+  if (!taken) return;
+  rememberUnacknowledged({session.id(), seq}, std::move(whole));
   if (moves) {
     m_view = view;
     m_viewEdits.emplace(session.id(), seq);
@@ -201,14 +212,12 @@ bool Service::askLoader(ClientSession& session, LoaderJob job) {
   return true;
 }
 
-void Service::ask(ClientSession& session, uint32_t seq, Request request) {
+bool Service::ask(ClientSession& session, uint32_t seq, Request request) {
   ++m_counters.requests;
-  if (session.unanswered < ClientSession::kMaxUnanswered && m_mailbox.push(std::move(request))) {
-    ++session.unanswered;
-    return;
-  }
-  session.saving = false;
-  sendError(session, seq, error(protocol::kErrorBusy, "too many requests wait"));
+  const bool taken = session.unanswered < ClientSession::kMaxUnanswered && m_mailbox.push(std::move(request));
+  if (taken) ++session.unanswered;
+  else sendError(session, seq, error(protocol::kErrorBusy, "too many requests wait"));
+  return taken;
 }
 
 }  // namespace limn::server

@@ -30,7 +30,12 @@ struct ReplyHandler {
     service.m_viewEdits.erase({ack.to.client, ack.to.seq});
     service.m_batches.erase({ack.to.client, ack.to.seq});
     const bool effective = !ack.superseded && ack.cost != CostClass::none;
-    if (effective) service.m_editors.insert(ack.to.client);
+    if (effective) {
+      service.m_editors.insert(ack.to.client);
+      service.noteAccepted(ack.to);
+    } else {
+      service.m_unacknowledged.erase({ack.to.client, ack.to.seq});
+    }
     if (!session) return;
     doneReading(ack.to.seq);
     if (effective) session->lastEffectiveSeq = std::max(session->lastEffectiveSeq, ack.to.seq);
@@ -40,9 +45,10 @@ struct ReplyHandler {
   void operator()(const ErrorReply& reply) const {
     if (service.m_viewEdits.erase({reply.to.client, reply.to.seq}) > 0) service.m_viewDoubtful = true;
     const bool batch = service.m_batches.erase({reply.to.client, reply.to.seq}) > 0;
+    service.m_unacknowledged.erase({reply.to.client, reply.to.seq});
     if (reply.to.client == kNobody) return service.tellAll(reply.error);
-    if (!session) return;
-    session->saving = false;
+    if (!session) return service.noteRefused(reply);
+    if (session->savingSeq == reply.to.seq) session->savingSeq = 0;
     doneReading(reply.to.seq);
     forgetEdit(reply.to.seq);
     Error error = reply.error;
@@ -60,6 +66,8 @@ struct ReplyHandler {
   }
   void operator()(const LoadReply& reply) const {
     service.learnView(*reply.scene);
+    service.m_loadedRevision = reply.scene->sceneRevision;
+    service.noteAccepted(reply.to);
     if (session) {
       doneReading(reply.to.seq);
       service.send(*session,
@@ -72,21 +80,30 @@ struct ReplyHandler {
   }
   void operator()(const SaveReply& reply) const {
     if (!session) return;
-    session->saving = false;
     service.send(*session, protocol::Saved{reply.to.seq, reply.exr->size(), protocol::Encoding::exr});
     if (!session->closing && !session->queueFile(reply.to.seq, reply.exr)) service.dropSlowReader(*session);
     service.m_transport->wantWrite(session->id());
   }
   void operator()(const WaitReply& reply) const {
     if (!session) return;
-    std::erase_if(session->errorWaits, [&](const ErrorWait& wait) { return wait.seq == reply.to.seq; });
-    service.tellWatched();
-    const protocol::Status told = toWire(service.m_replies.status());
-    service.send(*session, protocol::Waited{reply.to.seq, reply.steps, {reply.filmHash}, told.estimatedError,
-                                            told.errorLow, told.errorHigh});
+    const auto errorWait = std::find_if(session->errorWaits.begin(), session->errorWaits.end(),
+                                        [&](const ErrorWait& wait) { return wait.seq == reply.to.seq; });
+    if (errorWait != session->errorWaits.end()) {
+      if (waitsOn(*errorWait, reply)) return;
+      session->errorWaits.erase(errorWait);
+      service.tellWatched();
+    }
+    service.send(*session, toWire(reply));
   }
 
  private:
+  /// Whether an edit came between the picture that was good enough and the film's hash.
+  bool waitsOn(ErrorWait& wait, const WaitReply& reply) const {
+    if (reply.errorHigh <= wait.error || reply.converged) return false;
+    wait.asked = false;
+    ++session->unanswered;
+    return true;
+  }
   void doneReading(uint32_t seq) const {
     if (session->readingSeq == seq) session->readingSeq = 0;
   }
@@ -114,6 +131,7 @@ void Service::routeReplies() {
     if (session && session->unanswered > 0) --session->unanswered;
     ReplyHandler{*this, session}(failed);
   }
+  keepAccepted();
 }
 
 // The newest picture follows: pictures are distributed after replies.
@@ -162,7 +180,8 @@ void Service::sendStatus(ClientSession& session, const protocol::Status& status)
 }
 
 void Service::checkErrorWaits(ClientSession& session, const FrameInfo& info) {
-  if (session.errorWaits.empty()) return;
+  const bool ofAnotherScene = session.readingSeq != 0 || info.sceneRevision < m_loadedRevision;
+  if (session.errorWaits.empty() || ofAnotherScene) return;
   uint32_t applied = 0;
   for (const Origin& origin : info.applied)
     if (origin.client == session.id()) applied = origin.seq;

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "renderer/film/exr_layers.hpp"
-#include "renderer/film/file_bytes.hpp"
+#include "renderer/base/file_bytes.hpp"
 
 namespace limn {
 namespace {

@@ -37,7 +37,10 @@ struct DescribeRequest { Origin from; };
 struct WaitRequest { Origin from; uint32_t steps = 0; };
 /// Whether anybody looks; with nobody watching and nothing asked the loop sleeps.
 struct WatchRequest { bool watched = true; };
-using Request = std::variant<EditRequest, LoadRequest, PickRequest, SaveRequest, DescribeRequest, WaitRequest, WatchRequest>;
+/// Nothing that the client asked matters any more.
+struct LeaveRequest { uint64_t client = 0; };
+using Request = std::variant<EditRequest, LoadRequest, PickRequest, SaveRequest, DescribeRequest, WaitRequest, WatchRequest,
+                             LeaveRequest>;
 
 /// What was edited and what it cost. One for every EditRequest, also for camera edits that a later one replaced.
 struct EditAck {
@@ -78,7 +81,14 @@ struct PickReply {
   double distance = 0.0;               ///< [m] along the camera ray
 };
 struct SaveReply { Origin to; std::shared_ptr<const std::vector<uint8_t>> exr; };
-struct WaitReply { Origin to; uint64_t filmHash = 0; uint32_t steps = 0; };
+struct WaitReply {
+  Origin to;
+  uint64_t filmHash = 0;
+  uint32_t steps = 0;
+  bool converged = false;
+  float estimatedError = 0.0f;         ///< relMSE of that film; infinity until it can be told
+  float errorLow = 0.0f, errorHigh = 0.0f;  ///< 95 % interval
+};
 
 using Reply = std::variant<EditAck, ErrorReply, DescribeReply, LoadReply, PickReply, SaveReply, WaitReply>;
 

@@ -39,6 +39,7 @@ Result<void> Session::Impl::work(double seconds) {
   auto made = technique->advance(context(), seconds);
   if (!made) return made.error();
   progress = *made;
+  knownHash.reset();
   const double spent = nowSeconds() - begin;
   sampledSeconds += spent;
   auditOwed += spent * auditShare() / (1.0 - auditShare());

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "renderer/base/clock.hpp"
 #include "renderer/scene/clean_environment.hpp"
@@ -42,6 +43,22 @@ void unite(ChangeSet& into, const ChangeSet& more) {
   into.environmentImage |= more.environmentImage;
   into.view |= more.view;
   into.resolve |= more.resolve;
+}
+
+/// Adds what an edit asks for; the dearest class of what it changes.
+CostClass amend(FilmSetup& setup, const SetTechnique& edit) {
+  CostClass cost = CostClass::none;
+  if (edit.technique && *edit.technique != setup.technique) {
+    setup.technique = *edit.technique;
+    setup.parameters = defaultParameters(*findTechnique(setup.technique));
+    cost = CostClass::rebuild;
+  }
+  for (const auto& [name, value] : edit.parameters) {
+    if (setup.parameters[name] == value) continue;
+    setup.parameters[name] = value;
+    cost = std::max(cost, findParameter(*findTechnique(setup.technique), name)->cost);
+  }
+  return cost;
 }
 
 }  // namespace
@@ -89,19 +106,30 @@ Result<void> Session::Impl::checkEdit(std::span<const Edit> batch, size_t index)
   return validate(scene, batch, index);
 }
 
-CostClass Session::Impl::applyTechnique(const SetTechnique& edit) {
-  CostClass cost = CostClass::none;
-  if (edit.technique && *edit.technique != technique->info().name) {
-    chooseTechnique(*edit.technique);
-    cost = CostClass::rebuild;
+// What decides the device memory that is asked for comes before the rest of its batch and before its answer: when the device has
+// none, nothing else has changed, and what was before comes back.
+Result<Session::Impl::SetupOutcome> Session::Impl::applySetup(const EditRequest& request) {
+  const FilmSetup before = setup();
+  FilmSetup wanted = before;
+  SetupOutcome outcome;
+  std::string place;
+  for (size_t i = 0; i < request.edits.size(); ++i) {
+    const auto* size = std::get_if<SetImageSize>(&request.edits[i]);
+    const auto* chosen = std::get_if<SetTechnique>(&request.edits[i]);
+    if (size) std::tie(wanted.width, wanted.height) = std::tie(size->width, size->height);
+    if (chosen) outcome.parameterCost = std::max(outcome.parameterCost, amend(wanted, *chosen));
+    if (size || chosen) place = "/edits/" + std::to_string(i);
   }
-  for (const auto& [name, value] : edit.parameters) {
-    if (parameters[name] == value) continue;
-    parameters[name] = value;
-    technique->setParameter(name, value);
-    cost = std::max(cost, findParameter(technique->info(), name)->cost);
-  }
-  return cost;
+  outcome.sizeChanged = wanted.width != before.width || wanted.height != before.height;
+  if (wanted == before) return outcome;
+  if (auto done = redoPending(); !done) return done.error();
+  const Result<void> taken = takeSetup(wanted, planRestart({}, outcome.parameterCost, outcome.sizeChanged).cost);
+  if (taken) return outcome;
+  if (taken.error().code == "device-lost") return taken.error();
+  if (auto restored = takeSetup(before, CostClass::rebuild); !restored) return restored.error();
+  if (wanted.technique != before.technique) techniques.erase(wanted.technique);  // with what memory it has
+  outcome.refusal = Error{taken.error().code, taken.error().message, place};
+  return outcome;
 }
 
 Result<void> Session::Impl::handle(EditRequest& request) {
@@ -112,31 +140,19 @@ Result<void> Session::Impl::handle(EditRequest& request) {
       replies.push(ErrorReply{request.from, answer});
       return {};
     }
-  // A new size is the one edit that may fail when it is applied: it comes first, so that nothing else has changed then.
-  const SetImageSize* size = nullptr;
-  for (const Edit& edit : request.edits)
-    if (const auto* set = std::get_if<SetImageSize>(&edit)) size = set;
-  const bool sizeChanged = size && (size->width != config.width || size->height != config.height);
-  if (sizeChanged)
-    if (auto resized = resize(size->width, size->height); !resized) {
-      replies.push(ErrorReply{request.from, resized.error()});
-      return {};
-    }
+  const Result<SetupOutcome> setUp = applySetup(request);
+  if (!setUp) return setUp.error();
+  if (setUp->refusal) {
+    replies.push(ErrorReply{request.from, *setUp->refusal});
+    return {};
+  }
   const ChangeSet changes = apply(scene, resolve, request.edits);
-  CostClass parameterCost = CostClass::none;
-  for (const Edit& edit : request.edits)
-    if (const auto* set = std::get_if<SetTechnique>(&edit))
-      parameterCost = std::max(parameterCost, applyTechnique(*set));
-  const RestartPlan plan = planRestart(changes, parameterCost, sizeChanged);
+  const RestartPlan plan = planRestart(changes, setUp->parameterCost, setUp->sizeChanged);
   if (plan.syncScene) ++sceneRevision;
-  if (changes.view || sizeChanged) ++viewRevision;
-  uint32_t& applied = appliedSeq[request.from.client];
-  applied = std::max(applied, request.from.seq);  // an edit that waited for a file comes after later ones
-  editReceivedAt = request.receivedAt > 0.0 ? request.receivedAt : nowSeconds();
+  if (changes.view || setUp->sizeChanged) ++viewRevision;
+  acknowledge(request.from, request.receivedAt);
   ++status.editsApplied;
-  unite(pending.changes, changes);
-  pending.parameterCost = std::max(pending.parameterCost, parameterCost);
-  pending.sizeChanged |= sizeChanged;
+  unite(pending, changes);
   replies.push(EditAck{request.from, plan.cost, sceneRevision, viewRevision, false});
   return {};
 }
@@ -147,32 +163,41 @@ Result<void> Session::Impl::handle(LoadRequest& request) {
   Scene before = std::exchange(scene, std::move(request.loaded->scene));
   LoadReport reportBefore = std::exchange(report, std::move(request.loaded->report));
   cleanEnvironment(scene, report.notes);
-  ChangeSet all;
-  all.everything = true;
-  if (auto synced = syncScene(all); !synced) {
+  if (auto shown = showScene(); !shown) {
     // The scene does not fit the device: the old one comes back, and the client hears why.
-    if (synced.error().code == "device-lost") return synced;
+    if (shown.error().code == "device-lost") return shown;
     scene = std::move(before);
     report = std::move(reportBefore);
-    if (auto restored = syncScene(all); !restored) return restored;
-    replies.push(ErrorReply{request.from, synced.error()});
-  } else {
-    ++sceneRevision;
-    ++viewRevision;
-    appliedSeq[request.from.client] = request.from.seq;
-    editReceivedAt = request.receivedAt > 0.0 ? request.receivedAt : nowSeconds();
-    replies.push(LoadReply{request.from, summary(), nowSeconds() - begin});
-    planWarmUp();
+    if (auto restored = showScene(); !restored) return restored;
+    replies.push(ErrorReply{request.from, shown.error()});
+    return {};
   }
-  if (auto done = writeCamera(); !done) return done;
-  return restartFilm(CostClass::reload);
+  ++sceneRevision;
+  ++viewRevision;
+  acknowledge(request.from, request.receivedAt);
+  replies.push(LoadReply{request.from, summary(), nowSeconds() - begin});
+  planWarmUp();
+  return {};
+}
+
+Result<void> Session::Impl::handle(const LeaveRequest& request) {
+  appliedSeq.erase(request.client);
+  std::erase_if(waits, [&](const WaitRequest& wait) { return wait.from.client == request.client; });
+  return {};
+}
+
+// What waited for a file comes after later edits of the same client.
+void Session::Impl::acknowledge(const Origin& from, double receivedAt) {
+  uint32_t& applied = appliedSeq[from.client];
+  applied = std::max(applied, from.seq);
+  editReceivedAt = receivedAt > 0.0 ? receivedAt : nowSeconds();
 }
 
 Result<void> Session::Impl::redoPending() {
-  const PendingChanges todo = std::exchange(pending, {});
-  const RestartPlan plan = planRestart(todo.changes, todo.parameterCost, todo.sizeChanged);
+  const ChangeSet todo = std::exchange(pending, {});
+  const RestartPlan plan = planRestart(todo, CostClass::none, false);
   if (plan.syncScene)
-    if (auto done = syncScene(todo.changes); !done) return done;
+    if (auto done = syncScene(todo); !done) return done;
   if (plan.writeCamera)
     if (auto done = writeCamera(); !done) return done;
   if (plan.restartFilm) return restartFilm(plan.cost);

@@ -17,12 +17,14 @@ namespace limn {
 
 /// Parameter values by announced name, complete for the present technique.
 using ParameterValues = std::map<std::string, double>;
+ParameterValues defaultParameters(const TechniqueInfo& technique);
 
-/// Edits that were applied to the scene and whose derived data are not redone yet.
-struct PendingChanges {
-  ChangeSet changes;
-  CostClass parameterCost = CostClass::none;
-  bool sizeChanged = false;
+/// Size, technique and parameters: what an edit changes that the device may have no memory for.
+struct FilmSetup {
+  uint32_t width = 0, height = 0;      ///< [pixel]
+  std::string technique;
+  ParameterValues parameters;
+  bool operator==(const FilmSetup&) const = default;
 };
 
 /// What Session is made of. One file a concern: session.cpp the loop, session_edits.cpp what an edit does, session_state.cpp the
@@ -35,6 +37,10 @@ struct Session::Impl {
   Result<void> init(Scene newScene, LoadReport newReport, const SessionConfig& newConfig);
   Technique& keptTechnique(const std::string& name);
   void chooseTechnique(const std::string& name);
+  void setParameters(const ParameterValues& values);
+  FilmSetup setup() const { return {config.width, config.height, technique->info().name, parameters}; }
+  Result<void> takeSetup(const FilmSetup& wanted, CostClass cost);
+  Result<void> showScene();
   Result<void> resize(uint32_t width, uint32_t height);
   Result<void> syncScene(const ChangeSet& changes);
   Result<void> updateTracer(const gpu::SyncReport& report);
@@ -49,8 +55,16 @@ struct Session::Impl {
   Result<void> drainMailbox();
   Result<void> handle(EditRequest& request);
   Result<void> handle(LoadRequest& request);
+  Result<void> handle(const LeaveRequest& request);
+  /// What the device says to a new setup: refused with "limit" or "out-of-memory", it has the old one again.
+  struct SetupOutcome {
+    CostClass parameterCost = CostClass::none;
+    bool sizeChanged = false;
+    std::optional<Error> refusal;
+  };
+  Result<SetupOutcome> applySetup(const EditRequest& request);
   Result<void> checkEdit(std::span<const Edit> batch, size_t index) const;
-  CostClass applyTechnique(const SetTechnique& edit);
+  void acknowledge(const Origin& from, double receivedAt);
   Result<void> redoPending();
 
   // session_publish.cpp
@@ -118,7 +132,7 @@ struct Session::Impl {
   std::unique_ptr<WarmUpScene> warmUpScene;
   double warmUpSeconds = 0.0;           ///< spent on coldTechniques since planWarmUp()
 
-  PendingChanges pending;
+  ChangeSet pending;                    ///< applied to the scene; derived data are not redone yet
   Progress progress;
   FilmError error;
   FilmStatistics::Means means;
@@ -139,6 +153,7 @@ struct Session::Impl {
   uint64_t frameId = 0;
   std::map<uint64_t, uint32_t> appliedSeq;  ///< newest applied seq of every client
   std::vector<WaitRequest> waits;
+  std::optional<uint64_t> knownHash;    ///< of the film, since a wait was answered with it
   Status status;
   std::vector<StageTime> stages;
 };

@@ -8,10 +8,16 @@
 #include "shaders/shared/g_buffer_shared.h"
 
 namespace limn {
+namespace {
+
+/// A field of the message that asked.
+std::string placeIn(const Origin& from, const std::string& field) { return "seq " + std::to_string(from.seq) + " /" + field; }
+
+}  // namespace
 
 Result<void> Session::Impl::handle(const PickRequest& request) {
   if (request.x >= config.width || request.y >= config.height) {
-    replies.push(ErrorReply{request.from, {"out-of-range", "the pixel is outside the picture", request.x >= config.width ? "x" : "y"}});
+    replies.push(ErrorReply{request.from, {"out-of-range", "the pixel is outside the picture", placeIn(request.from, request.x >= config.width ? "x" : "y")}});
     return {};
   }
   const auto all = pickBindings();
@@ -54,11 +60,15 @@ Result<FilmImage> Session::Impl::readFilm() {
 
 Result<void> Session::Impl::handle(const SaveRequest& request) {
   auto image = readFilm();
-  if (!image) return image.error();
+  if (!image && image.error().code == "device-lost") return image.error();
+  if (!image) {
+    replies.push(ErrorReply{request.from, image.error()});
+    return {};
+  }
   if (!request.layers.empty()) {
     for (const std::string& wanted : request.layers)
       if (!image->find(wanted)) {
-        replies.push(ErrorReply{request.from, {"unknown-layer", "no layer is named \"" + wanted + "\"", "layers"}});
+        replies.push(ErrorReply{request.from, {"unknown-layer", "no layer is named \"" + wanted + "\"", placeIn(request.from, "layers")}});
         return {};
       }
     std::erase_if(image->layers, [&](const FilmLayer& layer) {
@@ -107,10 +117,17 @@ Result<void> Session::Impl::handle(const WaitRequest& request) {
 Result<void> Session::Impl::answerWaits() {
   const auto isDone = [&](const WaitRequest& w) { return progress.converged || (w.steps > 0 && progress.passes >= w.steps); };
   if (std::none_of(waits.begin(), waits.end(), isDone)) return {};
-  auto hash = film->hash(device);
-  if (!hash) return hash.error();
+  if (!knownHash) {
+    auto hash = film->hash(device);
+    if (!hash) return hash.error();
+    if (progress.passes > 1)
+      if (auto done = estimateError(); !done) return done;
+    knownHash = *hash;
+  }
   for (const WaitRequest& w : waits)
-    if (isDone(w)) replies.push(WaitReply{w.from, *hash, progress.passes});
+    if (isDone(w))
+      replies.push(WaitReply{w.from, *knownHash, progress.passes, progress.converged, float(error.relMse), float(error.low),
+                             float(error.high)});
   std::erase_if(waits, isDone);
   return {};
 }

@@ -36,6 +36,12 @@ void setDefaults(Technique& technique) {
 
 }  // namespace
 
+ParameterValues defaultParameters(const TechniqueInfo& technique) {
+  ParameterValues values;
+  for (const ParameterInfo& p : technique.parameters) values[p.name] = p.defaultValue;
+  return values;
+}
+
 Result<void> Session::Impl::init(Scene newScene, LoadReport newReport, const SessionConfig& newConfig) {
   config = newConfig;
   scene = std::move(newScene);
@@ -55,7 +61,7 @@ Result<void> Session::Impl::init(Scene newScene, LoadReport newReport, const Ses
   given.parameters = config.parameters;
   const Edit edit(given);
   if (auto checked = checkEdit(std::span(&edit, 1), 0); !checked) return checked;
-  applyTechnique(given);
+  setParameters({given.parameters.begin(), given.parameters.end()});
   if (auto done = resize(config.width, config.height); !done) return done;
   const double begin = nowSeconds();
   if (auto done = syncScene(wholeScene()); !done) return done;
@@ -86,13 +92,40 @@ void Session::Impl::chooseTechnique(const std::string& name) {
   technique = &keptTechnique(name);
   std::erase(coldTechniques, name);
   setDefaults(*technique);
-  parameters.clear();
-  for (const ParameterInfo& p : technique->info().parameters) parameters[p.name] = p.defaultValue;
+  parameters = defaultParameters(technique->info());
+}
+
+void Session::Impl::setParameters(const ParameterValues& values) {
+  for (const auto& [name, value] : values) {
+    if (parameters[name] == value) continue;
+    parameters[name] = value;
+    technique->setParameter(name, value);
+  }
+}
+
+// After an error it is half done: another setup has to be taken.
+Result<void> Session::Impl::takeSetup(const FilmSetup& wanted, CostClass cost) {
+  if (wanted.width != config.width || wanted.height != config.height)
+    if (auto done = resize(wanted.width, wanted.height); !done) return done;
+  if (wanted.technique != technique->info().name) chooseTechnique(wanted.technique);
+  setParameters(wanted.parameters);
+  if (auto done = writeCamera(); !done) return done;
+  if (cost > CostClass::displayOnly) return restartFilm(cost);
+  showAgain |= cost == CostClass::displayOnly;
+  return {};
+}
+
+Result<void> Session::Impl::showScene() {
+  if (auto done = syncScene(wholeScene()); !done) return done;
+  if (auto done = writeCamera(); !done) return done;
+  return restartFilm(CostClass::reload);
 }
 
 Result<void> Session::Impl::resize(uint32_t width, uint32_t height) {
   auto newFilm = Film::create(device, width, height);
   if (!newFilm) return newFilm.error();
+  config.width = width;  // from here on another size has to be taken when this one fails
+  config.height = height;
   if (!resolver) {
     auto newResolver = Resolver::create(device, *newFilm);
     if (!newResolver) return newResolver.error();
@@ -105,8 +138,6 @@ Result<void> Session::Impl::resize(uint32_t width, uint32_t height) {
     if (auto done = statistics->resize(device, *newFilm); !done) return done;
   }
   film = newFilm.take();
-  config.width = width;
-  config.height = height;
   return {};
 }
 
@@ -169,6 +200,7 @@ Result<void> Session::Impl::restartFilm(CostClass cost) {
   firstStride = nextFirstStride(firstStride, config.firstFrameSeconds,
                                 [&](uint32_t stride) { return technique->secondsToGrid(stride); });
   progress = {};
+  knownHash.reset();
   progress.fillStride = 8;
   error = {};
   means = {};

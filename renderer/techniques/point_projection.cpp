@@ -84,6 +84,7 @@ void PointProjectionTechnique::forgetLight() {
 Result<void> PointProjectionTechnique::makeBuffers(const TechniqueContext& context) {
   const uint32_t width = context.film.width(), height = context.film.height();
   if (m_width == width && m_height == height) return {};
+  m_width = m_height = 0;  // while buffers are of two sizes
   m_pixelOrder = makePixelOrder(width, height);
   const size_t pixels = size_t(width) * height;
   const struct {

@@ -55,13 +55,36 @@ Result<void> checkOptions(const DaemonOptions& options) {
     return Error{"io", "the asset root is not a directory", options.assetRoot.string()};
   if (!options.technique.empty() && !findTechnique(options.technique))
     return usageError("no technique is named '" + options.technique + "'");
-  if (options.stateDir.empty()) return {};
-  std::filesystem::create_directories(options.stateDir, error);
-  if (error) return Error{"io", "the state directory cannot be made", options.stateDir.string()};
+  for (const std::filesystem::path& directory : {options.stateDir, options.journalDir}) {
+    if (directory.empty()) continue;
+    std::filesystem::create_directories(directory, error);
+    if (error) return Error{"io", "the directory cannot be made", directory.string()};
+  }
   return {};
 }
 
-Result<void> serve(const DaemonOptions& options, SignalWatcher& signals) {
+/// The journal of the scene, whose last `load` becomes the scene to begin with. Null where none is wanted.
+Result<std::shared_ptr<Journal>> openJournal(DaemonOptions& options) {
+  if (options.journalDir.empty()) return std::shared_ptr<Journal>();
+  const Result<std::filesystem::path> file = journalFileFor(options.journalDir, options.scene);
+  if (!file) return file.error();
+  Result<std::unique_ptr<Journal>> opened = Journal::open(*file);
+  if (!opened) return opened.error();
+  std::shared_ptr<Journal> journal = opened.take();
+  for (const protocol::ClientMessage& message : journal->messages())
+    if (const auto* load = std::get_if<protocol::Load>(&message)) {
+      const Result<std::filesystem::path> scene = resolveAsset(options.assetRoot, load->uri);
+      if (scene) options.scene = *scene;
+      else if (Result<void> aside = journal->setAside(); !aside) return aside.error();
+      if (!scene) logWarning("the scene that was loaded last is gone, its edits are set aside: " + scene.error().text());
+      break;
+    }
+  return journal;
+}
+
+Result<void> serve(DaemonOptions options, SignalWatcher& signals) {
+  Result<std::shared_ptr<Journal>> journal = openJournal(options);
+  if (!journal) return journal.error();
   Mailbox mailbox;
   mailbox.push(WatchRequest{false});  // nobody looks until the service says so: no work is done before
   FrameSlot frames;
@@ -69,9 +92,12 @@ Result<void> serve(const DaemonOptions& options, SignalWatcher& signals) {
   RenderThread renderer(options, mailbox, frames, replies);
   if (Result<void> opened = renderer.opened(); !opened) return opened;
 
-  Result<std::unique_ptr<Service>> opened = Service::open(serviceConfig(options), mailbox, frames, replies);
+  ServiceConfig config = serviceConfig(options);
+  config.journal = journal.take();
+  Result<std::unique_ptr<Service>> opened = Service::open(config, mailbox, frames, replies);
   if (!opened) return opened.error();
   Service& service = **opened;
+  if (config.journal) service.takeUp(config.journal->messages());
   signals.start([&] {
     logInfo("asked to end: clients are told");
     service.drain();
@@ -87,8 +113,10 @@ Result<void> serve(const DaemonOptions& options, SignalWatcher& signals) {
   };
   renderer.start(ready, ended);
   service.run();
-  // Render thread and watcher reach into the service: they end first.
+  // Render thread and watcher reach into the service: they end first. A second signal ends the process whatever it waits for.
   Result<void> outcome = renderer.finish();
+  service.finishWork();
+  if (outcome && config.journal) config.journal->confirm();
   signals.stop();
   return outcome;
 }

@@ -132,6 +132,7 @@ CommandSpec daemonSpec() {
            {"max-clients", "N", "connections at a time; 16 when not given"},
            {"idle-exit", "SECONDS", "end when nobody was connected for so long"},
            {"state-dir", "DIR", "where compiled pipelines are kept between runs"},
+           {"journal", "DIR", "where accepted edits are kept, by scene; a daemon that starts takes them up again"},
            {"base-path", "P", "the path under which a proxy publishes the daemon"}}};
 }
 
@@ -158,6 +159,7 @@ Result<DaemonOptions> readDaemonOptions(const std::vector<std::string>& words) {
   options.device = arguments->text("device");
   options.technique = arguments->text("technique");
   options.stateDir = arguments->text("state-dir");
+  options.journalDir = arguments->text("journal");
   if (Result<void> r = readListen(arguments->text("listen", "127.0.0.1:8080"), options); !r) return r.error();
   if (Result<void> r = readBasePath(arguments->text("base-path"), options); !r) return r.error();
   if (Result<void> r = readNumbers(*arguments, options); !r) return r.error();

@@ -23,6 +23,7 @@ struct DaemonOptions {
   uint32_t maxClients = 16;
   double idleExitSeconds = 0.0;           ///< 0: never
   std::filesystem::path stateDir;         ///< pipeline cache; empty: nothing is kept
+  std::filesystem::path journalDir;       ///< accepted edits; empty: they end with the process
   std::string basePath;
 };
 

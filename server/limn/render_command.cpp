@@ -4,7 +4,7 @@
 
 #include "renderer/base/clock.hpp"
 #include "renderer/film/exr.hpp"
-#include "renderer/film/file_bytes.hpp"
+#include "renderer/base/file_bytes.hpp"
 #include "renderer/vk/device.hpp"
 #include "server/limn/cache_directory.hpp"
 #include "server/limn/commands.hpp"

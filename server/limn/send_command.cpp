@@ -6,7 +6,7 @@
 #include "protocol/client/client.hpp"
 #include "protocol/client/url.hpp"
 #include "renderer/base/clock.hpp"
-#include "renderer/film/file_bytes.hpp"
+#include "renderer/base/file_bytes.hpp"
 #include "server/limn/commands.hpp"
 #include "server/limn/hex_text.hpp"
 #include "server/limn/send_script.hpp"

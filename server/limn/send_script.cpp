@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "protocol/json_value.hpp"
-#include "renderer/film/file_bytes.hpp"
+#include "renderer/base/file_bytes.hpp"
 
 namespace limn {
 namespace {

@@ -124,9 +124,9 @@ TEST(Access, tokenMatrix) {
   EXPECT_EQ(statusAfter([](auto& h) { h.authorization = "Bearer secret-7secret-7"; }), 401);
   EXPECT_EQ(statusAfter([](auto& h) { h.authorization = "Bearer "; }), 401);
   EXPECT_EQ(statusAfter([](auto& h) { h.authorization = "Basic secret-7"; }), 401);
-  EXPECT_EQ(statusAfter([](auto& h) { h.cookie = "a=b; limn-token=secret-7"; }), 200);
-  EXPECT_EQ(statusAfter([](auto& h) { h.cookie = "limn-token=wrong"; }), 401);
-  EXPECT_EQ(statusAfter([](auto& h) { h.cookie = "xlimn-token=secret-7"; }), 401);
+  EXPECT_EQ(statusAfter([](auto& h) { h.cookie = "a=b; limn-token-8080=secret-7"; }), 200);
+  EXPECT_EQ(statusAfter([](auto& h) { h.cookie = "limn-token-8080=wrong"; }), 401);
+  EXPECT_EQ(statusAfter([](auto& h) { h.cookie = "xlimn-token-8080=secret-7"; }), 401);
   EXPECT_EQ(statusAfter([](auto& h) { h.subprotocols = "limn.v1, bearer.c2VjcmV0LTc"; }), 200);
   EXPECT_EQ(statusAfter([](auto& h) { h.subprotocols = "limn.v1, bearer.c2VjcmV0LTg"; }), 401);
   EXPECT_EQ(statusAfter([](auto& h) { h.subprotocols = "limn.v1, bearer.!!"; }), 401);

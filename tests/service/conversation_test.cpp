@@ -145,17 +145,21 @@ TEST(Conversation, pickNamesWhatIsThereOrNothing) {
 }
 
 TEST(Conversation, saveSendsAFileThatTakesNoCredit) {
-  TestService server;
-  TestClient client(server.port());
-  client.greet(false);
-  const uint32_t seq = client.nextSeq();
-  client.send(protocol::Save{seq, std::vector<std::string>{"beauty"}});
-  EXPECT_EQ(client.awaitReply<protocol::Saved>(seq).bytes, 300000u);
-  const auto file =
-      client.awaitPicture([](const protocol::FrameHeader& h) { return h.kind == protocol::FrameKind::file; });
-  EXPECT_EQ(file.header.ackSeq, seq);
-  EXPECT_EQ(file.payload.size(), 300000u);
-  EXPECT_LE(client.longestFragment, protocol::kMaxFragmentBytes);
+  for (const size_t bytes : {size_t(300000), 3 * ClientSession::kMaxQueuedBytes}) {
+    TestService::Options options;
+    options.renderer.fileBytes = bytes;
+    TestService server(options);
+    TestClient client(server.port());
+    client.greet(false);
+    const uint32_t seq = client.nextSeq();
+    client.send(protocol::Save{seq, std::vector<std::string>{"beauty"}});
+    EXPECT_EQ(client.awaitReply<protocol::Saved>(seq).bytes, bytes);
+    const auto file =
+        client.awaitPicture([](const protocol::FrameHeader& h) { return h.kind == protocol::FrameKind::file; });
+    EXPECT_EQ(file.header.ackSeq, seq);
+    EXPECT_EQ(file.payload.size(), bytes);
+    EXPECT_LE(client.longestFragment, protocol::kMaxFragmentBytes);
+  }
 }
 
 TEST(Conversation, unknownLayerIsNamedInTheError) {

@@ -65,6 +65,8 @@ TEST_F(DaemonOptionsTest, everyFlagIsRead) {
                                           "900",
                                           "--state-dir",
                                           "/var/limn",
+                                          "--journal",
+                                          "/var/edits",
                                           "--base-path",
                                           "/s/7/"});
   ASSERT_TRUE(options.ok()) << options.error().text();
@@ -76,6 +78,7 @@ TEST_F(DaemonOptionsTest, everyFlagIsRead) {
   EXPECT_EQ(options->height, 360u);
   EXPECT_EQ(options->maxClients, 3u);
   EXPECT_EQ(options->idleExitSeconds, 900.0);
+  EXPECT_EQ(options->journalDir, "/var/edits");
   EXPECT_EQ(options->basePath, "/s/7");
 }
 

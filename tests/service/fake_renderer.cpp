@@ -117,20 +117,24 @@ void FakeRenderer::handle(const Request& request) {
     if (pick->x < m_options.width / 2) reply.node = reply.material = reply.primitive = 0;
     m_replies.push(reply);
   } else if (const auto* save = std::get_if<SaveRequest>(&request)) {
-    m_replies.push(SaveReply{save->from, std::make_shared<const std::vector<uint8_t>>(300000, uint8_t(7))});
+    m_replies.push(SaveReply{save->from, std::make_shared<const std::vector<uint8_t>>(m_options.fileBytes, uint8_t(7))});
   } else if (const auto* ask = std::get_if<DescribeRequest>(&request)) {
     m_replies.push(DescribeReply{ask->from, describe()});
   } else if (const auto* wait = std::get_if<WaitRequest>(&request)) {
     m_waits.push_back(*wait);
   } else if (const auto* watch = std::get_if<WatchRequest>(&request)) {
     m_watched = watch->watched;
+  } else if (const auto* leave = std::get_if<LeaveRequest>(&request)) {
+    m_applied.erase(leave->client);
+    std::erase_if(m_waits, [&](const WaitRequest& w) { return w.from.client == leave->client; });
   }
 }
 
 void FakeRenderer::answerWaits() {
   std::erase_if(m_waits, [this](const WaitRequest& wait) {
     if (m_steps < (wait.steps ? wait.steps : m_options.passes)) return false;
-    m_replies.push(WaitReply{wait.from, 0xfeedull + m_steps, m_steps});
+    m_replies.push(WaitReply{wait.from, 0xfeedull + m_steps, m_steps, m_steps >= m_options.passes,
+                             1.0f / float(m_steps), 0.0f, 2.0f / float(m_steps)});
     return true;
   });
 }

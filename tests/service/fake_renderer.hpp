@@ -16,6 +16,7 @@ class FakeRenderer {
     uint32_t passes = 4;                 ///< pictures after a restart; the last one is Phase::converged
     double frameSeconds = 0.001;
     uint32_t materials = 2;
+    size_t fileBytes = 300000;           ///< of what save is answered with
     bool noisy = false;                  ///< pictures that hardly compress
     bool watched = false;                ///< before the service says so
   };

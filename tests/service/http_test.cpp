@@ -140,8 +140,13 @@ TEST(Http, theTokenLinkBecomesACookie) {
   EXPECT_EQ(reply.status, 303);
   EXPECT_EQ(reply.headers["location"], "/");
   EXPECT_EQ(reply.headers["set-cookie"], "limn-token=secret-7; HttpOnly; SameSite=Strict; Path=/");
-  EXPECT_EQ(RawClient().upgrade(server.port(), {{"Cookie", "limn-token=secret-7"}}), 101);
-  EXPECT_EQ(RawClient().upgrade(server.port(), {{"Cookie", "limn-token=secret-8"}}), 401);
+  // Browsers keep one cookie of a name for all ports of a host.
+  const std::string port = std::to_string(server.port()), named = "limn-token-" + port;
+  client.connect(server.port());
+  reply = client.request("GET /?token=secret-7 HTTP/1.1", {"Host: 127.0.0.1:" + port});
+  EXPECT_EQ(reply.headers["set-cookie"], named + "=secret-7; HttpOnly; SameSite=Strict; Path=/");
+  EXPECT_EQ(RawClient().upgrade(server.port(), {{"Cookie", "limn-token-1=secret-8; " + named + "=secret-7"}}), 101);
+  EXPECT_EQ(RawClient().upgrade(server.port(), {{"Cookie", named + "=secret-8"}}), 401);
   EXPECT_EQ(RawClient().upgrade(server.port(), {{"Authorization", "Bearer secret-7"}}), 101);
   EXPECT_EQ(RawClient().upgrade(server.port(), {{"Sec-WebSocket-Protocol", "limn.v1, bearer.c2VjcmV0LTc"}}), 101);
   EXPECT_EQ(RawClient().upgrade(server.port()), 401);

@@ -142,6 +142,29 @@ TEST(Peers, idleExitEndsTheLoop) {
   server.loop = std::thread([] {});
 }
 
+/// The picture of the scene before is as good as one could wish.
+TEST(Loading, aWaitForAnErrorIsAboutTheNewScene) {
+  const fs::path root = fs::temp_directory_path() / ("limn-wait-" + std::to_string(getpid()));
+  fs::create_directories(root);
+  std::ofstream(root / "room.glb") << "glTF";
+  TestService::Options options;
+  options.renderer.frameSeconds = 0.05;
+  options.configure = [&](ServiceConfig& config) {
+    config.assetRoot = root;
+    config.readers.scene = [](const fs::path&) -> Result<LoadedScene> { return LoadedScene{}; };
+  };
+  TestService server(options);
+  TestClient client(server.port());
+  client.greet();
+  client.awaitPicture([](const protocol::FrameHeader& h) { return h.flags & protocol::kFrameFinal; });
+  client.send(protocol::Load{10, "room.glb"});
+  client.send(protocol::Wait{11, {}, 0.67f});
+  client.awaitReply<protocol::Loaded>(10);
+  client.send(protocol::Wait{12, {}, 0.67f});
+  for (const uint32_t seq : {11u, 12u}) EXPECT_GE(client.awaitReply<protocol::Waited>(seq).steps, 3u) << seq;
+  fs::remove_all(root);
+}
+
 TEST(Loading, aSceneUnderTheRootIsLoadedAndToldToAll) {
   const fs::path root = fs::temp_directory_path() / ("limn-load-" + std::to_string(getpid()));
   fs::create_directories(root / "sub");

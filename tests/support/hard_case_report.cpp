@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "protocol/json_writer.hpp"
-#include "renderer/film/file_bytes.hpp"
+#include "renderer/base/file_bytes.hpp"
 #include "tests/support/hard_case.hpp"
 
 namespace limn::test {

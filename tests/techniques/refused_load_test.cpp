@@ -1,6 +1,8 @@
-// A scene that the device cannot hold is refused, and the one before it is rendered on as if nothing had been asked.
+// What the device cannot hold, a scene or a picture or a technique, is refused, and what was before it is rendered on as if nothing had
+// been asked.
 #include <gtest/gtest.h>
 
+#include "renderer/techniques/technique.hpp"
 #include "tests/support/rich_scene.hpp"
 #include "tests/support/session_fixture.hpp"
 
@@ -24,12 +26,66 @@ uint32_t load(TestSession& session, Scene scene) {
   return session.ask(std::move(request));
 }
 
-TEST(RefusedLoad, KeepsTheSceneItsPictureAndItsEdits) {
+std::unique_ptr<vk::Device> smallDevice() {
   vk::DeviceOptions options;
   options.validation = true;
   options.cacheDir = LIMN_BUILD_DIR "/test-pipelines";
   options.largestBuffer = kLargestBuffer;
-  const auto small = must(vk::Device::open(options));
+  return must(vk::Device::open(options));
+}
+
+/// The one reply there is, which refuses `seq`.
+void expectRefusal(TestSession& session, uint32_t seq, const std::string& place) {
+  const std::vector<Reply> replies = session.takeReplies();
+  ASSERT_EQ(replies.size(), 1u);
+  const auto* refused = std::get_if<ErrorReply>(&replies[0]);
+  ASSERT_NE(refused, nullptr);
+  EXPECT_EQ(refused->to.seq, seq);
+  EXPECT_EQ(refused->error.code, "limit");
+  EXPECT_EQ(refused->error.place, place);
+}
+
+SetTechnique pointsOf(double count) {
+  SetTechnique edit;
+  edit.technique = "point-projection";
+  edit.parameters = {{"points", count}, {"clusters", 256.0}};
+  return edit;
+}
+
+TEST(RefusedSetup, KeepsSizeTechniqueParametersAndPicture) {
+  const auto small = smallDevice();
+  const auto log = small->validationLog();
+  {
+    TestSession session(plainScene(), smallPicture(), *small);
+    session.run(3);
+    const uint64_t film = session.hash();
+    // Quarter of a million points need more than the largest buffer holds.
+    const uint32_t many = session.edit({pointsOf(262144.0)});
+    session.run(3);
+    expectRefusal(session, many, "/edits/0");
+    EXPECT_EQ(session->technique().info().name, "path-tracing");
+    EXPECT_EQ(session.hash(), film) << "the same samples by the same technique";
+
+    EXPECT_EQ(session.apply({pointsOf(16384.0)}).cost, CostClass::rebuild);
+    session.run(2);
+    const uint64_t projected = session.hash();
+    // A film of this size fits, but nothing that holds twice as much for a pixel; the light of the same batch stays as it is.
+    SetLight dim;
+    dim.intensity = 0.5f;
+    const uint32_t large = session.edit({dim, SetImageSize{256, 256}});
+    session.run(2);
+    expectRefusal(session, large, "/edits/1");
+    EXPECT_EQ(session.hash(), projected) << "the same samples of the same size and scene";
+
+    EXPECT_EQ(session.apply({SetImageSize{48, 40}}).cost, CostClass::regather);
+    session.run(2);
+    EXPECT_EQ(session.film().width, 48u);
+  }
+  EXPECT_EQ(log->count(), 0u);
+}
+
+TEST(RefusedLoad, KeepsTheSceneItsPictureAndItsEdits) {
+  const auto small = smallDevice();
   ASSERT_EQ(small->limits().maxBufferSize, kLargestBuffer);
   const auto log = small->validationLog();
   {

@@ -1,4 +1,4 @@
-#include "renderer/film/file_bytes.hpp"
+#include "renderer/base/file_bytes.hpp"
 
 #include <unistd.h>
 

@@ -1,0 +1,59 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "renderer/base/result.hpp"
+#include "server/edit_summary.hpp"
+
+namespace limn::server {
+
+/// Accepted edits in a file that outlives the process. A line a message: CRC-32C of the JSON in hexadecimal, a blank, the JSON. What
+/// was appended survives the end of the process at once, and of the machine too, but for mere views, which are not synced. When
+/// the file has grown far beyond what it says it is written anew, atomically. One thread.
+class Journal {
+ public:
+  /// Opens the file, or makes it, and reads it; from the first line on that is torn or wrong it is cut off. What was opened
+  /// kMostStarts times in a row without confirm() is set aside: it may be what ends the process. Errors: "io", "busy" where
+  /// another process has it open, "bad-file" for a file that is no journal.
+  static constexpr uint32_t kMostStarts = 3;
+  static Result<std::unique_ptr<Journal>> open(const std::filesystem::path& file);
+  ~Journal();
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+
+  /// All that was accepted, by the fewest messages: maybe a `load`, then `batch`es.
+  std::vector<protocol::ClientMessage> messages() const { return m_summary.messages(); }
+  /// `load`s and `batch`es. Errors: "io"; then the file holds none of them, and the next call tries again.
+  Result<void> append(std::span<const protocol::ClientMessage> messages);
+  /// The process lives on with what the journal holds.
+  void confirm();
+  /// Moves what there is to FILE.aside and goes on empty. Errors: "io".
+  Result<void> setAside();
+
+  const std::filesystem::path& file() const { return m_file; }
+  uint64_t bytes() const { return m_bytes; }
+
+ private:
+  explicit Journal(std::filesystem::path file) : m_file(std::move(file)) {}
+  Result<void> lock();
+  Result<void> openFile();
+  Result<void> read();
+  Result<void> rewrite();
+  Result<void> countStart();
+  void writeStarts(uint32_t count);
+
+  std::filesystem::path m_file;
+  int m_fd = -1, m_lock = -1;
+  uint64_t m_bytes = 0;                ///< of whole lines in the file
+  EditSummary m_summary;               ///< of all that was accepted, written or not
+  bool m_behind = false;               ///< the file lacks something that was accepted
+  bool m_confirmed = false;
+};
+
+/// The journal in `directory` that belongs to a scene file, by its contents. Errors: "io".
+Result<std::filesystem::path> journalFileFor(const std::filesystem::path& directory, const std::filesystem::path& scene);
+
+}  // namespace limn::server
