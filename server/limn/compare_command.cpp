@@ -6,6 +6,7 @@
 #include "renderer/film/compare.hpp"
 #include "renderer/film/exr.hpp"
 #include "server/limn/commands.hpp"
+#include "server/limn/output_file.hpp"
 
 namespace limn {
 namespace {
@@ -102,6 +103,9 @@ Result<void> writeHeatmap(const std::string& file, const RadianceView& picture, 
 Result<void> run(const Arguments& arguments) {
   const Result<std::vector<std::string>> chosen = chosenMetrics(arguments);
   if (!chosen) return chosen.error();
+  const std::string heatmap = arguments.text("heatmap");
+  if (arguments.has("heatmap"))
+    if (Result<void> writable = checkWritable(heatmap); !writable) return writable;
   const Result<Pictures> pictures = readPictures(arguments);
   if (!pictures) return pictures.error();
   const Result<RadianceView> picture = radianceOf(pictures->picture, arguments.positionals()[0]);
@@ -119,7 +123,7 @@ Result<void> run(const Arguments& arguments) {
     low = valuesOf(*averaged, *chosen);
   }
   if (arguments.has("heatmap"))
-    if (Result<void> written = writeHeatmap(arguments.text("heatmap"), *picture, *reference); !written) return written;
+    if (Result<void> written = writeHeatmap(heatmap, *picture, *reference); !written) return written;
 
   if (arguments.has("json")) {
     protocol::JsonWriter json;

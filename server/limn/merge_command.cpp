@@ -3,6 +3,7 @@
 #include "renderer/film/exr.hpp"
 #include "server/limn/commands.hpp"
 #include "server/limn/merge_parts.hpp"
+#include "server/limn/output_file.hpp"
 
 namespace limn {
 namespace {
@@ -22,6 +23,7 @@ Result<std::vector<MergePart>> readParts(const std::vector<std::string>& files) 
 Result<void> run(const Arguments& arguments) {
   const std::string output = arguments.text("output");
   if (!output.ends_with(".exr")) return usageError("--output must end in .exr, not '" + output + "'");
+  if (Result<void> writable = checkWritable(output); !writable) return writable;
   const Result<std::vector<MergePart>> parts = readParts(arguments.positionals());
   if (!parts) return parts.error();
 

@@ -1,9 +1,10 @@
 #include "server/limn/render_options.hpp"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "renderer/techniques/technique_info.hpp"
+#include "server/limn/output_file.hpp"
+#include "server/limn/render_stats.hpp"
 
 namespace limn {
 namespace {
@@ -117,12 +118,12 @@ Result<void> checkOutput(const Arguments& arguments, RenderOptions& options) {
   for (const std::string& name : options.layers)
     if (std::find(std::begin(kLayers), std::end(kLayers), name) == std::end(kLayers))
       return Error{"unsupported", "the film has no layer '" + name + "'", ""};
-  for (const std::string& file : {options.output, options.stats}) {
-    const std::filesystem::path directory = std::filesystem::path(file).parent_path();
-    std::error_code problem;
-    if (!directory.empty() && !std::filesystem::is_directory(directory, problem))
-      return Error{"io", "no such directory", directory.string()};
-  }
+  std::vector<std::string> files = {options.output};
+  if (!options.stats.empty()) files.push_back(options.stats);
+  for (const CheckpointRequest& asked : options.checkpoints)
+    files.push_back(checkpointFile(options.output, asked.text));
+  for (const std::string& file : files)
+    if (Result<void> writable = checkWritable(file); !writable) return writable;
   return {};
 }
 

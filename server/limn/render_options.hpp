@@ -42,7 +42,7 @@ struct RenderOptions {
 CommandSpec renderSpec();
 
 /// Errors: "usage" for what is malformed or contradicts itself, "unsupported" for an unknown technique, parameter or
-/// layer, "io" when the output's directory does not exist.
+/// layer, "io" when the picture, the statistics or a checkpoint cannot be written where they are to go.
 Result<RenderOptions> renderOptions(const Arguments& arguments);
 
 /// Sample range, seed and parameters for the session. A render of counted samples is not adaptive: every pixel gets

@@ -88,6 +88,19 @@ TEST_F(Limn, AFileThatIsNotThereExits1WithOneLineThatNamesIt) {
   expectOneLine(merge.err);
 }
 
+TEST_F(Limn, AnOutputThatCannotBeWrittenIsToldBeforeTheInputsAreRead) {
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"merge", "absent.exr", "--output", "/proc/out.exr"},
+                                             {"compare", "absent.exr", "absent.exr", "--heatmap", "/proc/out.png"},
+                                             {"render", "absent.glb", "--output", "/proc/out.exr"}}) {
+    const ProgramRun run = limnProgram(words);
+    EXPECT_EQ(run.exitCode, 1);
+    EXPECT_THAT(run.err, HasSubstr("limn " + words[0] + ": /proc/out."));
+    EXPECT_THAT(run.err, HasSubstr("cannot be written"));
+    expectOneLine(run.err);
+  }
+}
+
 TEST_F(Limn, CompareTellsTheErrorAsJson) {
   const std::string a = film("a.exr", 3.0f), r = film("r.exr", 2.0f);
   const ProgramRun run = limnProgram({"compare", a, r, "--json", "--low"});

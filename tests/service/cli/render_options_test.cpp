@@ -7,6 +7,7 @@
 
 #include "renderer/techniques/technique_info.hpp"
 #include "server/limn/render_stats.hpp"
+#include "tests/service/cli/run_program.hpp"
 
 namespace limn {
 namespace {
@@ -98,7 +99,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{{"--set", "maxBounces=-1"}, "out-of-range", "maxBounces"},
         Refusal{{"--technique", "crayon"}, "unsupported", "crayon"},
         Refusal{{"--aov", "smell"}, "unsupported", "smell"},
-        Refusal{{"--stats", "/nonexistent/stats.json"}, "io", "/nonexistent"}));
+        Refusal{{"--stats", "/nonexistent/stats.json"}, "io", "/nonexistent: no such directory"},
+        Refusal{{"--stats", "/proc"}, "io", "/proc: is a directory"},
+        Refusal{{"--stats", "/proc/stats.json"}, "io", "/proc/stats.json: cannot be written"}));
 
 TEST(RenderOptions, OutputsAreExrOrPng) {
   const auto with = [](const std::vector<std::string>& words) {
@@ -109,8 +112,18 @@ TEST(RenderOptions, OutputsAreExrOrPng) {
   EXPECT_EQ(with({"s.glb", "--output", "o.jpg"}).error().code, "usage");
   EXPECT_EQ(with({"s.glb", "--output", "o.png", "--aov", "depth"}).error().code, "usage");
   EXPECT_EQ(with({"s.glb", "--output", "o.png", "--samples", "0:4"}).error().code, "usage");
+  EXPECT_EQ(with({"s.glb", "--output", "/proc/o.exr"}).error().code, "io");
   EXPECT_EQ(with({"s.glb"}).error().code, "usage");
   EXPECT_EQ(with({"--output", "o.png"}).error().code, "usage");
+}
+
+TEST(RenderOptions, CheckpointsThatCannotBeWrittenAreFoundBeforeTheRender) {
+  const test::ScratchDirectory scratch;
+  std::filesystem::create_directory(scratch.file("o.0.5s.exr"));
+  const std::vector<std::string> words = {"s.glb", "--output", scratch.file("o.png"), "--checkpoints", "0.25,0.5"};
+  const Result<RenderOptions> o = renderOptions(Arguments::parse(renderSpec(), words).value());
+  ASSERT_FALSE(o.ok());
+  EXPECT_EQ(o.error().text(), scratch.file("o.0.5s.exr") + ": is a directory");
 }
 
 Scene sceneWithCameras() {
