@@ -32,7 +32,8 @@ class Render {
     if (!outcome) return outcome.error();
     m_stats.outcome = outcome.take();
     if (Result<void> done = writePicture(); !done) return done;
-    return report();
+    if (Result<void> done = report(); !done) return done;
+    return checkpointsWritten();
   }
 
  private:
@@ -131,6 +132,18 @@ class Render {
     if (m_options.stats.empty()) return {};
     const std::string json = renderStatsJson(m_stats);
     return writeFileAtomically(m_options.stats, {reinterpret_cast<const uint8_t*>(json.data()), json.size()});
+  }
+
+  /// The first failure, told with how many there are.
+  Result<void> checkpointsWritten() const {
+    const std::vector<CheckpointTaken>& taken = m_stats.outcome.checkpoints;
+    const auto failed = [](const CheckpointTaken& checkpoint) { return checkpoint.failure.has_value(); };
+    const auto first = std::find_if(taken.begin(), taken.end(), failed);
+    if (first == taken.end()) return {};
+    Error error = *first->failure;
+    error.message += "; " + std::to_string(std::count_if(first, taken.end(), failed)) + " of " +
+                     std::to_string(taken.size()) + " checkpoints were not written";
+    return error;
   }
 
   std::string errorText() const {

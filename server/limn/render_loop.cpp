@@ -27,8 +27,9 @@ Result<RenderOutcome> renderUntil(const StopRule& stop, const std::vector<Checkp
       const CheckpointRequest& next = checkpoints[outcome.checkpoints.size()];
       if (!done && next.seconds > outcome.seconds) break;
       const double before = hooks.now();
-      outcome.checkpoints.push_back({next, outcome.seconds, outcome.state});
-      if (Result<void> taken = hooks.takeCheckpoint(outcome.checkpoints.back()); !taken) return taken.error();
+      CheckpointTaken taken{next, outcome.seconds, outcome.state};
+      if (const Result<void> written = hooks.takeCheckpoint(taken); !written) taken.failure = written.error();
+      outcome.checkpoints.push_back(std::move(taken));
       aside += hooks.now() - before;
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "server/limn/render_options.hpp"
@@ -19,6 +20,7 @@ struct CheckpointTaken {
   CheckpointRequest request;
   double seconds = 0.0;                ///< of rendering when it was taken: the end of a pass, or the end of the render
   PassState state;
+  std::optional<Error> failure;        ///< why its file was not written
 };
 
 struct RenderHooks {
@@ -37,7 +39,8 @@ struct RenderOutcome {
 };
 
 /// Passes until the rule or convergence stops them; at least one. Each checkpoint is taken at the first end of a pass
-/// at or after its time. Those that the end forestalls show the final film. The first error of a hook ends it.
+/// at or after its time. Those that the end forestalls show the final film. The first error of a pass ends it; one of a
+/// checkpoint is kept with it.
 Result<RenderOutcome> renderUntil(const StopRule& stop, const std::vector<CheckpointRequest>& checkpoints,
                                   const RenderHooks& hooks);
 

@@ -49,7 +49,8 @@ void writeCheckpoints(protocol::JsonWriter& json, const RenderStats& stats) {
     json.field("estimatedError", taken.state.error);
     json.field("estimatedErrorLow", taken.state.errorLow);
     json.field("estimatedErrorHigh", taken.state.errorHigh);
-    json.field("file", checkpointFile(stats.output, taken.request.text));
+    if (taken.failure) json.field("failure", taken.failure->text());
+    else json.field("file", checkpointFile(stats.output, taken.request.text));
     json.endObject();
   }
   json.endArray();

@@ -110,15 +110,24 @@ TEST(RenderLoop, CheckpointsAfterConvergenceShowTheFinalFilm) {
   EXPECT_DOUBLE_EQ(outcome.checkpoints[1].seconds, 2.0);
 }
 
-TEST(RenderLoop, TheFirstErrorEndsIt) {
+TEST(RenderLoop, TheFirstErrorOfAPassEndsIt) {
   FakeRender fake;
   fake.failsAt = 3;
   EXPECT_EQ(renderUntil(afterSeconds(9.0), {}, fake.hooks()).error().code, "device-lost");
-  RenderHooks hooks = FakeRender().hooks();
-  FakeRender other;
-  hooks = other.hooks();
-  hooks.takeCheckpoint = [](const CheckpointTaken&) -> Result<void> { return Error{"io", "disk full", ""}; };
-  EXPECT_EQ(renderUntil(afterSeconds(9.0), {{"1", 1.0}}, hooks).error().code, "io");
+}
+
+TEST(RenderLoop, ACheckpointThatIsNotWrittenIsNotedAndTheRenderGoesOn) {
+  FakeRender fake;
+  RenderHooks hooks = fake.hooks();
+  hooks.takeCheckpoint = [](const CheckpointTaken& taken) -> Result<void> {
+    return taken.request.text == "1" ? Result<void>(Error{"io", "disk full", ""}) : Result<void>();
+  };
+  const RenderOutcome outcome = renderUntil(afterSeconds(9.0), {{"1", 1.0}, {"2", 2.0}}, hooks).value();
+  EXPECT_EQ(outcome.state.steps, 9u);
+  ASSERT_EQ(outcome.checkpoints.size(), 2u);
+  ASSERT_TRUE(outcome.checkpoints[0].failure);
+  EXPECT_EQ(outcome.checkpoints[0].failure->message, "disk full");
+  EXPECT_FALSE(outcome.checkpoints[1].failure);
 }
 
 }  // namespace

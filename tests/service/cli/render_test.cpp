@@ -79,6 +79,25 @@ TEST_F(Render, StatisticsCheckpointsAndLayersAreAsAsked) {
   EXPECT_LT(*checkpoints[0].find("seconds")->number(), *checkpoints[1].find("seconds")->number());
 }
 
+TEST_F(Render, ACheckpointThatTheDiskHasNoRoomForCostsNeitherThePictureNorTheStatistics) {
+  ASSERT_EQ(run("warm.png", {"--steps", "1"}).exitCode, 0) << "pipelines are kept before room is short";
+  // Room for a small PNG, not for a film with all its layers.
+  const std::string shortOfRoom = "trap '' XFSZ; ulimit -f 8; exec \"$0\" \"$@\"";
+  const test::ProgramRun done = test::runProgram(
+      "/bin/sh", {"-c", shortOfRoom, LIMN_PROGRAM, "render", kScene, "--output", file("full.png"), "--size", "24x20",
+                  "--steps", "2", "--stats", file("full.json"), "--checkpoints", "0.000001,1000"});
+  EXPECT_EQ(done.exitCode, 1);
+  EXPECT_THAT(done.err, HasSubstr("full.0.000001s.exr: cannot be written: File too large; 2 of 2 checkpoints"));
+  EXPECT_THAT(done.out, HasSubstr("samples 0:2"));
+  EXPECT_TRUE(test::readText(file("full.png")).starts_with("\x89PNG"));
+  EXPECT_FALSE(std::filesystem::exists(file("full.0.000001s.exr")));
+  const Result<protocol::JsonValue> stats = protocol::parseJson(test::readText(file("full.json")), 8);
+  ASSERT_TRUE(stats.ok()) << stats.error().text();
+  const protocol::JsonValue& checkpoint = stats->find("checkpoints")->array()->front();
+  EXPECT_THAT(*checkpoint.find("failure")->string(), HasSubstr("File too large"));
+  EXPECT_FALSE(checkpoint.find("file"));
+}
+
 TEST_F(Render, APngIsWritten) {
   const test::ProgramRun done = run("view.png", {"--steps", "1"});
   ASSERT_EQ(done.exitCode, 0) << done.err;
