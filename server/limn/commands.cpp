@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "renderer/base/log.hpp"
+#include "server/limn/interruption.hpp"
 
 namespace limn {
 namespace {
@@ -16,7 +17,8 @@ std::string overview() {
     text += line + command.spec.summary + "\n";
   }
   return text + "\nlimn COMMAND --help lists the flags of a command.\n"
-                "Exit codes: 0 done, 64 wrong usage, 75 the device must be reset, 1 any other failure.\n";
+                "Exit codes: 0 done, 64 wrong usage, 75 the device must be reset, 130 or 143 interrupted, "
+                "1 any other failure.\n";
 }
 
 }  // namespace
@@ -46,7 +48,9 @@ int runLimn(const std::vector<std::string>& words) {
     return kExitOk;
   }
   const Result<void> done = command->run(*arguments);
-  return done ? int(kExitOk) : reportFailure(command->spec.name, done.error());
+  if (done) return kExitOk;
+  const int code = reportFailure(command->spec.name, done.error());
+  return done.error().code == kInterrupted ? 128 + Interruption::signal() : code;
 }
 
 }  // namespace limn

@@ -8,6 +8,7 @@
 #include "renderer/vk/device.hpp"
 #include "server/limn/cache_directory.hpp"
 #include "server/limn/commands.hpp"
+#include "server/limn/interruption.hpp"
 #include "server/limn/render_stats.hpp"
 
 namespace limn {
@@ -28,12 +29,14 @@ class Render {
   Result<void> run() {
     if (Result<void> done = load(); !done) return done;
     if (Result<void> done = build(); !done) return done;
+    const Interruption interruption;  // before the first pass there is nothing to write, and a signal ends it at once
     Result<RenderOutcome> outcome = renderUntil(m_options.stop, m_options.checkpoints, hooks());
     if (!outcome) return outcome.error();
     m_stats.outcome = outcome.take();
     if (Result<void> done = writePicture(); !done) return done;
     if (Result<void> done = report(); !done) return done;
-    return checkpointsWritten();
+    if (Result<void> done = checkpointsWritten(); !done) return done;
+    return interruptionError();
   }
 
  private:
@@ -78,7 +81,8 @@ class Render {
   RenderHooks hooks() {
     return {.pass = [this] { return pass(); },
             .takeCheckpoint = [this](const CheckpointTaken& taken) { return writeCheckpoint(taken); },
-            .now = nowSeconds};
+            .now = nowSeconds,
+            .interrupted = [] { return Interruption::signal() != 0; }};
   }
 
   Result<PassState> pass() {
@@ -144,6 +148,12 @@ class Render {
     error.message += "; " + std::to_string(std::count_if(first, taken.end(), failed)) + " of " +
                      std::to_string(taken.size()) + " checkpoints were not written";
     return error;
+  }
+
+  Result<void> interruptionError() const {
+    if (Interruption::signal() == 0) return {};
+    return Error{kInterrupted, "interrupted after " + std::to_string(m_stats.outcome.state.steps) + " passes; " +
+                                   m_options.output + " holds them", ""};
   }
 
   std::string errorText() const {

@@ -15,13 +15,14 @@ Result<RenderOutcome> renderUntil(const StopRule& stop, const std::vector<Checkp
   RenderOutcome outcome;
   const double begin = hooks.now();
   double aside = 0.0;  // spent on checkpoints
-  for (bool done = false; !done;) {
+  for (bool done = false; !done && !outcome.interrupted;) {
     const Result<PassState> state = hooks.pass();
     if (!state) return state.error();
     const bool progressed = state->steps > outcome.state.steps;
     outcome.state = *state;
     outcome.seconds = hooks.now() - begin - aside;
     done = !progressed || ended(stop, outcome.seconds, outcome.state);
+    outcome.interrupted = !done && hooks.interrupted();
 
     while (outcome.checkpoints.size() < checkpoints.size()) {
       const CheckpointRequest& next = checkpoints[outcome.checkpoints.size()];

@@ -30,17 +30,20 @@ struct RenderHooks {
   std::function<Result<void>(const CheckpointTaken&)> takeCheckpoint;
   /// [s], monotonic.
   std::function<double()> now;
+  /// Whether to stop after this pass.
+  std::function<bool()> interrupted;
 };
 
 struct RenderOutcome {
   double seconds = 0.0;                ///< of rendering, from the first step
   PassState state;
   std::vector<CheckpointTaken> checkpoints;
+  bool interrupted = false;            ///< before the rule or convergence stopped it
 };
 
-/// Passes until the rule or convergence stops them; at least one. Each checkpoint is taken at the first end of a pass
-/// at or after its time. Those that the end forestalls show the final film. The first error of a pass ends it; one of a
-/// checkpoint is kept with it.
+/// Passes until the rule, convergence or an interruption stops them; at least one. Each checkpoint is taken at the
+/// first end of a pass at or after its time. Those that the end forestalls show the final film; after an interruption
+/// they are not taken. The first error of a pass ends it; one of a checkpoint is kept with it.
 Result<RenderOutcome> renderUntil(const StopRule& stop, const std::vector<CheckpointRequest>& checkpoints,
                                   const RenderHooks& hooks);
 

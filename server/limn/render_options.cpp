@@ -131,7 +131,7 @@ Result<void> checkOutput(const Arguments& arguments, RenderOptions& options) {
 
 CommandSpec renderSpec() {
   return {"limn render",
-          "Renders a still of a glTF scene.",
+          "Renders a still of a glTF scene; SIGINT or SIGTERM ends it early with the picture so far, exit 130 or 143.",
           {"SCENE"},
           {{"output", "FILE.{exr,png}", "EXR: radiance in layers; PNG: what a viewer shows", false, "", true},
            {"size", "WxH", "pixels (default: 512x512)"},

@@ -83,6 +83,7 @@ void writeQuality(protocol::JsonWriter& json, const RenderStats& stats) {
   json.field("discardedSamples", stats.status.discardedSamples);
   json.field("discardedShare", stats.status.discardedShare);
   json.field("converged", stats.outcome.state.converged);
+  json.field("interrupted", stats.outcome.interrupted);
   json.field("estimatedError", stats.outcome.state.error);
   json.field("estimatedErrorLow", stats.outcome.state.errorLow);
   json.field("estimatedErrorHigh", stats.outcome.state.errorHigh);

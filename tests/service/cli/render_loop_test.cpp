@@ -14,7 +14,7 @@ using ::testing::ElementsAre;
 /// A renderer whose passes take a second each of a clock of our own, and whose error is 1/steps, known to a fifth.
 struct FakeRender {
   double clock = 100.0, passSeconds = 1.0, checkpointSeconds = 5.0;
-  uint32_t steps = 0, convergesAt = 1000, failsAt = 1000;
+  uint32_t steps = 0, convergesAt = 1000, failsAt = 1000, interruptedAt = 1000;
   std::vector<std::string> taken;
 
   RenderHooks hooks() {
@@ -31,7 +31,8 @@ struct FakeRender {
               clock += checkpointSeconds;
               return {};
             },
-            .now = [this] { return clock; }};
+            .now = [this] { return clock; },
+            .interrupted = [this] { return steps >= interruptedAt; }};
   }
 };
 
@@ -108,6 +109,23 @@ TEST(RenderLoop, CheckpointsAfterConvergenceShowTheFinalFilm) {
   const RenderOutcome outcome = renderUntil(afterSeconds(10.0), asked, fake.hooks()).value();
   EXPECT_THAT(fake.taken, ElementsAre("1@1", "10@2"));
   EXPECT_DOUBLE_EQ(outcome.checkpoints[1].seconds, 2.0);
+}
+
+TEST(RenderLoop, AnInterruptionEndsItAfterThePassWithoutTheLaterCheckpoints) {
+  FakeRender fake;
+  fake.interruptedAt = 3;
+  const RenderOutcome outcome = renderUntil(afterSeconds(9.0), {{"3", 3.0}, {"5", 5.0}}, fake.hooks()).value();
+  EXPECT_EQ(outcome.state.steps, 3u);
+  EXPECT_TRUE(outcome.interrupted);
+  EXPECT_THAT(fake.taken, ElementsAre("3@3"));
+}
+
+TEST(RenderLoop, AnInterruptionInTheLastPassIsNone) {
+  FakeRender fake;
+  fake.interruptedAt = 2;
+  const RenderOutcome outcome = renderUntil({{}, 2, {}}, {{"5", 5.0}}, fake.hooks()).value();
+  EXPECT_FALSE(outcome.interrupted);
+  EXPECT_THAT(fake.taken, ElementsAre("5@2"));
 }
 
 TEST(RenderLoop, TheFirstErrorOfAPassEndsIt) {

@@ -3,9 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
+#include <thread>
 
 #include "protocol/json_value.hpp"
+#include "renderer/base/clock.hpp"
+#include "tests/service/child_process.hpp"
 #include "tests/service/cli/render_fixture.hpp"
+#include "tests/service/raw_client.hpp"
 
 namespace limn {
 namespace {
@@ -19,6 +24,12 @@ class Render : public test::RenderFixture {
     for (const auto& [name, value] : image.metadata)
       if (name == key) return value;
     return "";
+  }
+  /// Asks until the file is there or patience ends.
+  static bool appears(const std::string& name) {
+    const double end = nowSeconds() + server::testing::RawClient::kPatience;
+    while (!std::filesystem::exists(name) && nowSeconds() < end) std::this_thread::yield();
+    return std::filesystem::exists(name);
   }
 };
 
@@ -96,6 +107,26 @@ TEST_F(Render, ACheckpointThatTheDiskHasNoRoomForCostsNeitherThePictureNorTheSta
   const protocol::JsonValue& checkpoint = stats->find("checkpoints")->array()->front();
   EXPECT_THAT(*checkpoint.find("failure")->string(), HasSubstr("File too large"));
   EXPECT_FALSE(checkpoint.find("file"));
+}
+
+TEST_F(Render, ASignalEndsItWithThePictureSoFar) {
+  for (const int number : {SIGINT, SIGTERM}) {
+    const std::string name = "signal" + std::to_string(number);
+    server::testing::ChildProcess process(
+        LIMN_PROGRAM, {"render", kScene, "--output", file(name + ".exr"), "--size", "24x20", "--spp", "4000000000",
+                       "--stats", file(name + ".json"), "--checkpoints", "0.000001,1000000"});
+    ASSERT_TRUE(appears(file(name + ".0.000001s.exr")));
+    process.signal(number);
+    ASSERT_EQ(process.wait(), 128 + number) << process.errors();
+
+    const Result<protocol::JsonValue> stats = protocol::parseJson(test::readText(file(name + ".json")), 8);
+    ASSERT_TRUE(stats.ok()) << stats.error().text();
+    EXPECT_TRUE(*stats->find("interrupted")->boolean());
+    const std::string passes = std::to_string(uint64_t(*stats->find("steps")->number()));
+    EXPECT_THAT(process.errors(), HasSubstr("limn render: interrupted after " + passes + " passes; "));
+    EXPECT_EQ(metadata(readExr(file(name + ".exr")).value(), "limn:samples"), "0:" + passes);
+    EXPECT_FALSE(std::filesystem::exists(file(name + ".1000000s.exr")));
+  }
 }
 
 TEST_F(Render, APngIsWritten) {
