@@ -21,6 +21,20 @@ std::string overview() {
                 "1 any other failure.\n";
 }
 
+/// The exit code of a command whose outcome is `done`. What it printed must have arrived, too.
+int finish(const std::string& name, Result<void> done) {
+  const bool printed = std::fflush(stdout) == 0 && !std::ferror(stdout);
+  if (done && !printed) done = Error{"io", "standard output cannot be written", ""};
+  if (done) return kExitOk;
+  const int code = reportFailure(name, done.error());
+  return done.error().code == kInterrupted ? 128 + Interruption::signal() : code;
+}
+
+int print(const std::string& name, const std::string& text) {
+  std::fputs(text.c_str(), stdout);
+  return finish(name, {});
+}
+
 }  // namespace
 
 std::vector<Command> allCommands() {
@@ -31,10 +45,7 @@ std::vector<Command> allCommands() {
 int runLimn(const std::vector<std::string>& words) {
   setLogLevel(LogLevel::warning);  // stderr is for what went wrong
   if (words.empty()) return reportFailure("limn", usageError("no command; limn --help lists them"));
-  if (words[0] == "--help" || words[0] == "-h") {
-    std::fputs(overview().c_str(), stdout);
-    return kExitOk;
-  }
+  if (words[0] == "--help" || words[0] == "-h") return print("limn", overview());
   const std::vector<Command> commands = allCommands();
   const auto command = std::find_if(commands.begin(), commands.end(),
                                     [&](const Command& c) { return c.spec.name == "limn " + words[0]; });
@@ -43,14 +54,8 @@ int runLimn(const std::vector<std::string>& words) {
 
   const Result<Arguments> arguments = Arguments::parse(command->spec, std::span(words).subspan(1));
   if (!arguments) return reportFailure(command->spec.name, arguments.error());
-  if (arguments->help()) {
-    std::fputs(helpText(command->spec).c_str(), stdout);
-    return kExitOk;
-  }
-  const Result<void> done = command->run(*arguments);
-  if (done) return kExitOk;
-  const int code = reportFailure(command->spec.name, done.error());
-  return done.error().code == kInterrupted ? 128 + Interruption::signal() : code;
+  if (arguments->help()) return print(command->spec.name, helpText(command->spec));
+  return finish(command->spec.name, command->run(*arguments));
 }
 
 }  // namespace limn

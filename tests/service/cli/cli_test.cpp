@@ -145,6 +145,19 @@ TEST_F(Limn, CompareRefusesUnknownMetricsAndOtherSizes) {
   EXPECT_THAT(run.err, HasSubstr("16x8 against a reference of 2x2"));
 }
 
+TEST_F(Limn, OutputThatDoesNotArriveIsAFailure) {
+  const std::string a = film("a.exr", 3.0f);
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"--help"}, {"info", "--help"}, {"compare", a, a}, {"merge", a, "--output", scratch("whole.exr")}}) {
+    std::vector<std::string> whole = {"-c", "exec \"$0\" \"$@\" >/dev/full", LIMN_PROGRAM};
+    whole.insert(whole.end(), words.begin(), words.end());
+    const ProgramRun run = test::runProgram("/bin/sh", whole);
+    EXPECT_EQ(run.exitCode, 1) << words[0];
+    EXPECT_THAT(run.err, HasSubstr(": standard output cannot be written"));
+    expectOneLine(run.err);
+  }
+}
+
 TEST_F(Limn, MergeWritesTheMeanOfTheParts) {
   const std::string whole = scratch("whole.exr");
   const std::string second = film("b.exr", 5.0f, "4:8"), first = film("a.exr", 1.0f, "0:4");
