@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 
 #include "protocol/client/client.hpp"
 #include "protocol/client/url.hpp"
@@ -51,8 +52,9 @@ class Sending {
   Sending(Client& client, std::string directory, double timeout)
       : m_client(client), m_directory(std::move(directory)), m_timeout(timeout) {}
 
-  /// Prints one line. Errors: the server's error reply; "io" when the answer does not come.
-  Result<void> send(const std::string& label, ClientMessage message) {
+  /// Prints one line. Errors: the server's error reply; "io" when the answer does not come. They name `place`, or that
+  /// of the earlier message that the server complains of.
+  Result<void> send(const std::string& label, const std::string& place, ClientMessage message) {
     const bool answered = !std::holds_alternative<AckFrame>(message), file = std::holds_alternative<Save>(message);
     const bool bye = std::holds_alternative<ClientBye>(message);
     const std::string op(opOf(message));
@@ -60,14 +62,16 @@ class Sending {
     const bool edit = isEdit(message);
     const double begin = nowSeconds();
     const uint32_t seq = m_client.send(std::move(message));
+    m_places[seq] = place;
     if (edit) m_lastEdit = seq;
+    if (bye) m_saidBye = true;
     std::string outcome = "sent";
     if (answered) {
       const Result<ServerMessage> answer = awaitAnswer(seq, bye);
       if (!answer) return answer.error();
       outcome = describe(*answer);
       if (file)
-        if (Result<void> kept = keepFile(seq); !kept) return kept;
+        if (Result<void> kept = keepFile(seq); !kept) return errorOf(seq, kept.error());
     }
     std::printf("%s: %s seq %u: %s, %.1f ms\n", label.c_str(), op.c_str(), seq, outcome.c_str(),
                 (nowSeconds() - begin) * 1e3);
@@ -75,13 +79,14 @@ class Sending {
     return {};
   }
 
-  /// Keeps frames until one shows the last edit, where frames are kept and anything was edited.
+  /// Keeps frames until one shows the last edit, where frames are kept and anything was edited. After a bye there are
+  /// only those that the server had sent before.
   Result<void> keepLastFrame() {
     if (m_directory.empty() || !m_edited) return {};
     const double end = nowSeconds() + std::min(m_timeout, kLastFrameWait);
     while (m_shown < m_lastEdit && nowSeconds() < end) {
       const std::optional<Event> event = m_client.nextEvent(end - nowSeconds());
-      if (!event) break;
+      if (!event || endsAfterBye(*event)) break;
       if (Result<void> taken = take(*event); !taken) return taken;
     }
     return {};
@@ -90,19 +95,30 @@ class Sending {
   uint64_t framesKept() const { return m_framesKept; }
 
  private:
+  /// The error with the line of the script that was sent as `seq`.
+  Error errorOf(uint32_t seq, Error error) const {
+    const auto sent = m_places.find(seq);
+    return sent == m_places.end() ? error : errorAt(sent->second, std::move(error));
+  }
+
+  bool endsAfterBye(const Event& event) const {
+    const auto* closed = std::get_if<Closed>(&event);
+    return m_saidBye && closed && closed->code == kCloseNormal;
+  }
+
   Result<ServerMessage> awaitAnswer(uint32_t seq, bool bye) {
     const double end = nowSeconds() + m_timeout;
     while (true) {
       const std::optional<Event> event = m_client.nextEvent(std::max(0.0, end - nowSeconds()));
-      if (!event)
-        return Error{"io", "no answer to seq " + std::to_string(seq) + number(" within %.3g s", m_timeout), ""};
+      const std::string late = "no answer to seq " + std::to_string(seq) + number(" within %.3g s", m_timeout);
+      if (!event) return errorOf(seq, {"io", late, ""});
       const auto* received = std::get_if<ReceivedMessage>(&*event);
       if (!received) {
-        if (Result<void> taken = take(*event); !taken) return taken.error();
+        if (Result<void> taken = take(*event); !taken) return errorOf(seq, taken.error());
         continue;
       }
       if (const auto* error = std::get_if<ErrorMessage>(&received->message))
-        return Error{error->code, error->message, error->place.value_or("")};
+        return errorOf(error->seq.value_or(seq), {error->code, error->message, error->place.value_or("")});
       if (bye && std::holds_alternative<ServerBye>(received->message)) return received->message;
       if (answeredSeq(received->message) == seq) return received->message;
     }
@@ -142,7 +158,8 @@ class Sending {
   Client& m_client;
   std::string m_directory;
   double m_timeout = 0.0;
-  bool m_edited = false;
+  std::map<uint32_t, std::string> m_places;  ///< of what was sent, by seq
+  bool m_edited = false, m_saidBye = false;
   uint32_t m_lastEdit = 0, m_shown = 0;
   uint64_t m_framesKept = 0;
 };
@@ -186,11 +203,12 @@ Result<void> run(const Arguments& arguments) {
   if (!client) return client.error();
   Sending sending(**client, directory, *timeout);
   for (const ScriptMessage& entry : *script)
-    if (Result<void> sent = sending.send("line " + std::to_string(entry.line), entry.message); !sent) return sent;
+    if (Result<void> sent = sending.send("line " + std::to_string(entry.line), entry.place, entry.message); !sent)
+      return sent;
   if (arguments.has("wait-error")) {
     Wait wait;
     wait.error = float(*waitError);
-    if (Result<void> waited = sending.send("end", wait); !waited) return waited;
+    if (Result<void> waited = sending.send("end", "--wait-error", wait); !waited) return waited;
   }
   if (Result<void> kept = sending.keepLastFrame(); !kept) return kept;
   if (!directory.empty())
@@ -202,7 +220,8 @@ Result<void> run(const Arguments& arguments) {
 
 Command sendCommand() {
   return {{"limn send",
-           "Sends the messages of a script to limnd, one JSON object a line, each after the answer to the one before.",
+           "Sends the messages of a script to limnd, one JSON object a line, each after the answer to the one before; "
+           "every seq is made anew.",
            {"URL", "SCRIPT.jsonl"},
            {{"save", "DIR", "keep frames and saved files there"},
             {"wait-error", "E", "after the last message wait until the upper end of relMSE's 95 % interval is this small"},

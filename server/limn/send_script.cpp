@@ -10,13 +10,13 @@ namespace {
 
 constexpr uint64_t kLongestScript = 64ull << 20;  // [byte]
 
-/// The message with a seq that reads as valid, and whether it had none of its own.
-std::pair<std::string, bool> withSeq(const std::string& line) {
+/// The message with a seq that reads as valid where it has none of its own.
+std::string withSeq(const std::string& line) {
   const Result<protocol::JsonValue> json = protocol::parseJson(line, protocol::kMaxJsonDepth);
-  if (!json || !json->object() || json->object()->empty() || json->find("seq")) return {line, false};
+  if (!json || !json->object() || json->object()->empty() || json->find("seq")) return line;
   std::string numbered = line;
   numbered.insert(numbered.find('{') + 1, "\"seq\":1,");
-  return {numbered, true};
+  return numbered;
 }
 
 }  // namespace
@@ -28,15 +28,11 @@ Result<std::vector<ScriptMessage>> parseScript(const std::string& text, const st
   for (std::string line; std::getline(lines, line);) {
     ++number;
     if (line.find_first_not_of(" \t\r") == line.npos) continue;
-    const auto [json, added] = withSeq(line);
-    Result<protocol::ClientMessage> message = protocol::decodeClient(json);
-    if (!message) {
-      const Error& error = message.error();
-      const std::string where = place + ":" + std::to_string(number);
-      return Error{error.code, error.message, error.place.empty() ? where : where + " " + error.place};
-    }
-    if (added) std::visit([](auto& m) { m.seq = 0; }, *message);
-    script.push_back({number, message.take()});
+    const std::string where = place + ":" + std::to_string(number);
+    Result<protocol::ClientMessage> message = protocol::decodeClient(withSeq(line));
+    if (!message) return errorAt(where, message.error());
+    std::visit([](auto& m) { m.seq = 0; }, *message);
+    script.push_back({number, where, message.take()});
   }
   return script;
 }
@@ -45,6 +41,11 @@ Result<std::vector<ScriptMessage>> readScript(const std::filesystem::path& file)
   const Result<std::vector<uint8_t>> bytes = readFileBytes(file, kLongestScript);
   if (!bytes) return bytes.error();
   return parseScript(std::string(bytes->begin(), bytes->end()), file.string());
+}
+
+Error errorAt(const std::string& place, Error error) {
+  error.place = error.place.empty() ? place : place + " " + error.place;
+  return error;
 }
 
 bool isEdit(const protocol::ClientMessage& message) {

@@ -62,7 +62,7 @@ TEST_F(Flags, SendGivesUpAfterItsTimeout) {
       test::runProgram(LIMN_PROGRAM, {"send", url, file("script.jsonl"), "--timeout", "0.25"});
   service.renderer->hold(false);
   EXPECT_EQ(run.exitCode, 1);
-  EXPECT_THAT(run.err, HasSubstr("no answer to seq 2 within 0.25 s"));
+  EXPECT_THAT(run.err, HasSubstr("script.jsonl:1: no answer to seq 2 within 0.25 s"));
 }
 
 TEST_F(Flags, DevicesAreListedByTheirIndex) {

@@ -16,7 +16,8 @@ TEST(SendScript, ReadsOneMessageALineAndPassesOverBlankOnes) {
   EXPECT_EQ((*script)[0].line, 1u);
   EXPECT_EQ(std::get<protocol::Ping>((*script)[0].message).seq, 0u) << "the client numbers it";
   EXPECT_EQ((*script)[1].line, 4u);
-  EXPECT_EQ(std::get<protocol::Wait>((*script)[1].message).seq, 17u);
+  EXPECT_EQ((*script)[1].place, "s:4");
+  EXPECT_EQ(std::get<protocol::Wait>((*script)[1].message).seq, 0u) << "the client numbers this one, too";
   EXPECT_EQ(std::get<protocol::Wait>((*script)[1].message).steps, 4u);
   EXPECT_TRUE(std::holds_alternative<protocol::Describe>((*script)[2].message));
 }
@@ -38,6 +39,7 @@ TEST(SendScript, MistakesAreFoundBeforeAnythingIsSentAndNameTheLine) {
   };
   EXPECT_EQ(refusal("{\"op\":\"ping\"}\nnot json").code, "bad-message");
   EXPECT_THAT(refusal("{\"op\":\"ping\"}\nnot json").place, HasSubstr("edits.jsonl:2"));
+  EXPECT_THAT(refusal(R"({"op":"ping","seq":-1})").place, HasSubstr("edits.jsonl:1 /seq"));
   EXPECT_EQ(refusal("[1]").code, "bad-message");
   EXPECT_EQ(refusal("{}").code, "bad-message");
   EXPECT_EQ(refusal(R"({"op":"paint"})").code, "unknown-op");

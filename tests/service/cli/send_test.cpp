@@ -21,6 +21,8 @@ constexpr const char* kRoughness = R"({"op":"set","target":"material","material"
 /// `limn send` against the real server with a fake renderer behind it.
 class Send : public ::testing::Test {
  protected:
+  explicit Send(uint32_t passes = 4) : m_service(options(passes)) {}
+
   test::ProgramRun send(const std::string& script, std::vector<std::string> flags = {}) {
     const std::string file = m_scratch.file("script.jsonl");
     std::ofstream(file) << script;
@@ -35,8 +37,20 @@ class Send : public ::testing::Test {
   }
 
  private:
+  static TestService::Options options(uint32_t passes) {
+    TestService::Options options;
+    options.renderer.passes = passes;
+    return options;
+  }
+
   test::ScratchDirectory m_scratch;
   TestService m_service;
+};
+
+/// The renderer answers edits, but no picture ever shows them.
+class SendWithoutPictures : public Send {
+ protected:
+  SendWithoutPictures() : Send(0) {}
 };
 
 TEST_F(Send, PrintsOneLineAMessageWithItsCost) {
@@ -75,9 +89,9 @@ TEST_F(Send, WaitsForAnErrorThatTheScriptNames) {
 
 TEST_F(Send, StopsAtTheFirstErrorReplyAndShowsItsText) {
   const test::ProgramRun run =
-      send("{\"op\":\"set\",\"target\":\"material\",\"material\":99,\"roughness\":0.5}\n{\"op\":\"ping\"}\n");
+      send("\n{\"op\":\"set\",\"target\":\"material\",\"material\":99,\"roughness\":0.5}\n{\"op\":\"ping\"}\n");
   EXPECT_EQ(run.exitCode, 1);
-  EXPECT_THAT(run.err, HasSubstr("material"));
+  EXPECT_THAT(run.err, HasSubstr("script.jsonl:2 seq 2 /material: no such material"));
   EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
   EXPECT_THAT(run.out, ::testing::Not(HasSubstr("ping")));
 }
@@ -93,6 +107,29 @@ TEST_F(Send, SaysGoodbyeWhenTheScriptDoes) {
   const test::ProgramRun run = send("{\"op\":\"ping\"}\n{\"op\":\"bye\"}\n");
   EXPECT_EQ(run.exitCode, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("line 2: bye"));
+}
+
+TEST_F(Send, NumbersEveryMessageAnewBetweenItsOwn) {
+  // 1 is that of hello; frames, and with them acknowledgements that take numbers, come all the while.
+  const std::string again = R"({"op":"set","seq":1,"target":"material","material":0,"roughness":0.25})";
+  const std::string script = again + "\n{\"op\":\"wait\",\"seq\":9}\n" + again + "\n{\"op\":\"wait\",\"seq\":3}\n";
+  const test::ProgramRun run = send(script, {"--save", scratch("kept")});
+  EXPECT_EQ(run.exitCode, 0) << run.err;
+  EXPECT_THAT(run.out, ::testing::Not(HasSubstr(" seq 1:")));
+  EXPECT_THAT(run.out, HasSubstr("line 4: wait seq "));
+}
+
+TEST_F(SendWithoutPictures, AByeEndsTheWaitForTheLastOne) {
+  const test::ProgramRun run = send(std::string(kRoughness) + "\n{\"op\":\"bye\"}\n", {"--save", scratch("kept")});
+  EXPECT_EQ(run.exitCode, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  EXPECT_THAT(run.out, HasSubstr("kept: 0 frames"));
+}
+
+TEST_F(Send, WhatComesAfterTheByeIsRefusedWithItsLine) {
+  const test::ProgramRun run = send("{\"op\":\"bye\"}\n{\"op\":\"ping\"}\n");
+  EXPECT_EQ(run.exitCode, 1);
+  EXPECT_THAT(run.err, HasSubstr("script.jsonl:2: the connection ended with 1000"));
 }
 
 TEST_F(Send, UnreachableServersAndWrongAddressesAreTold) {
