@@ -11,6 +11,7 @@
 #include "server/limn/bench_scene.hpp"
 #include "server/limn/cache_directory.hpp"
 #include "server/limn/commands.hpp"
+#include "server/limn/output_file.hpp"
 
 namespace limn {
 namespace {
@@ -76,6 +77,7 @@ Result<void> writeReport(BenchResults& results) {
   return writeText((output / "index.html").string(), resultsPage(results, output.string()));
 }
 
+/// After an error `results` holds what was done before it.
 Result<void> measure(BenchResults& results) {
   const BenchOptions& options = results.options;
   const Result<std::vector<PeerPicture>> peers = readPeerPictures(options.pictures);
@@ -112,16 +114,22 @@ Result<void> run(const Arguments& arguments) {
   std::error_code problem;
   std::filesystem::create_directories(options->output, problem);
   if (problem) return Error{"io", problem.message(), options->output};
+  const std::filesystem::path page = std::filesystem::path(options->output) / "index.html";
+  if (Result<void> writable = checkWritable(page); !writable) return writable;
   BenchResults results;
   results.options = options.take();
   results.version = LIMN_VERSION;
   const double begin = nowSeconds();
-  if (Result<void> done = measure(results); !done) return done;
+  const Result<void> measured = measure(results);
+  if (!measured && results.scenes.empty()) return measured;
+  if (!measured) results.absent.push_back("The benchmark ended early. " + measured.error().text());
   results.seconds = nowSeconds() - begin;
   results.calibrations = calibrateAll(results.scenes);
-  if (Result<void> done = writeReport(results); !done) return done;
-  printSummary(results);
-  return {};
+  const Result<void> written = writeReport(results);
+  if (written) printSummary(results);
+  if (measured) return written;
+  if (!written) reportFailure("limn bench", written.error());
+  return measured;
 }
 
 }  // namespace

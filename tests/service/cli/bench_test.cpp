@@ -141,6 +141,35 @@ TEST_F(Bench, TheReferenceIsKeptAndGoesOn) {
   EXPECT_LT(noise[1], noise[0]);
 }
 
+TEST_F(Bench, AnErrorInALaterSceneKeepsTheReportOfTheEarlierOnes) {
+  std::ofstream(file("late.glb")) << "not a scene";
+  const std::vector<std::string> rest = {"--steps", "2", "--seeds", "1", "--techniques", "path-tracing"};
+  std::vector<std::string> flags = {"--scenes", kScene + "," + file("late.glb")};
+  flags.insert(flags.end(), rest.begin(), rest.end());
+  const test::ProgramRun done = run("early", flags);
+  EXPECT_EQ(done.exitCode, 1);
+  EXPECT_THAT(done.err, HasSubstr("limn bench: late.glb: not JSON"));
+  EXPECT_EQ(std::count(done.err.begin(), done.err.end(), '\n'), 1) << done.err;
+  const Table results = table(test::readText(file("early/results.csv")));
+  ASSERT_EQ(results.rows.size(), 1u);
+  EXPECT_EQ(results.rows[0].at("scene"), "analytic-point");
+  EXPECT_THAT(test::readText(file("early/index.html")), HasSubstr("The benchmark ended early. late.glb: not JSON"));
+}
+
+TEST_F(Bench, AnErrorInTheFirstSceneLeavesNoReport) {
+  std::ofstream(file("bad.glb")) << "not a scene";
+  EXPECT_EQ(run("none", {"--scenes", file("bad.glb"), "--steps", "2"}).exitCode, 1);
+  EXPECT_FALSE(std::filesystem::exists(file("none/index.html")));
+}
+
+TEST_F(Bench, AReportThatCannotBeWrittenIsToldBeforeItIsMeasured) {
+  std::filesystem::create_directories(file("taken/index.html"));
+  const test::ProgramRun done = run("taken", {"--scenes", kScene, "--steps", "2"});
+  EXPECT_EQ(done.exitCode, 1);
+  EXPECT_EQ(done.out, "");
+  EXPECT_THAT(done.err, HasSubstr("taken/index.html: is a directory"));
+}
+
 TEST_F(Bench, AnotherRenderersPicturesAreMeasuredToo) {
   const std::string picture = file("peer.exr");
   const std::vector<std::string> render = {"render", kScene, "--output", picture, "--size", "64x64", "--spp", "1"};
