@@ -19,9 +19,14 @@ Error ioError(const std::filesystem::path& file, const std::string& what) { retu
 
 }  // namespace
 
-Result<void> writeFileAtomically(const std::filesystem::path& file, std::span<const uint8_t> bytes) {
+std::filesystem::path temporaryFor(const std::filesystem::path& file) {
   std::filesystem::path beside = file;
   beside += ".tmp." + std::to_string(getpid());
+  return beside;
+}
+
+Result<void> writeFileAtomically(const std::filesystem::path& file, std::span<const uint8_t> bytes) {
+  const std::filesystem::path beside = temporaryFor(file);
   File out(std::fopen(beside.c_str(), "wb"));
   if (!out) return ioError(file, std::string("cannot be written: ") + std::strerror(errno));
   bool written = std::fwrite(bytes.data(), 1, bytes.size(), out.get()) == bytes.size();

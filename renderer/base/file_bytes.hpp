@@ -8,6 +8,9 @@
 
 namespace limn {
 
+/// The name beside `file` that writeFileAtomically() of this process writes to first.
+std::filesystem::path temporaryFor(const std::filesystem::path& file);
+
 /// The file appears whole or not at all: written beside its final place, then renamed. Errors: "io". Any thread.
 Result<void> writeFileAtomically(const std::filesystem::path& file, std::span<const uint8_t> bytes);
 

@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "renderer/base/file_bytes.hpp"
+
 namespace limn {
 
 Result<void> checkWritable(const std::filesystem::path& file) {
@@ -18,7 +20,7 @@ Result<void> checkWritable(const std::filesystem::path& file) {
   if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
     return Error{"io", "is not a regular file", file.string()};
 
-  const std::string beside = file.string() + ".tmp." + std::to_string(getpid());
+  const std::filesystem::path beside = temporaryFor(file);
   const int made = open(beside.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
   if (made < 0) return Error{"io", std::string("cannot be written: ") + std::strerror(errno), file.string()};
   close(made);

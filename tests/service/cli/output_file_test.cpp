@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/film/file_bytes.hpp"
+#include "renderer/base/file_bytes.hpp"
 #include "tests/service/cli/run_program.hpp"
 
 namespace limn {
