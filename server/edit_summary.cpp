@@ -9,8 +9,8 @@ using nlohmann::json;
 
 json jsonOf(const protocol::Edit& edit) { return json::parse(protocol::encode(protocol::Batch{1, {edit}}))["edits"][0]; }
 
-protocol::ClientMessage messageOf(const json& edit) {
-  const json batch{{"op", "batch"}, {"seq", 1}, {"edits", json::array({edit})}};
+protocol::ClientMessage messageOf(const std::vector<json>& edits) {
+  const json batch{{"op", "batch"}, {"seq", 1}, {"edits", edits}};
   Result<protocol::ClientMessage> message = protocol::decodeClient(batch.dump());
   LIMN_CHECK(message.ok());
   return message.take();
@@ -22,12 +22,15 @@ std::string subjectOf(const json& edit) {
   return edit.contains(target) && edit[target].is_number() ? target + "/" + edit[target].dump() : target;
 }
 
+/// Whether another scene has its own; size, display and technique stay as they are.
+bool isOfTheScene(const std::string& subject) { return subject != "image" && subject != "resolve"; }
+
 }  // namespace
 
 void EditSummary::add(const protocol::ClientMessage& message) {
   if (const auto* load = std::get_if<protocol::Load>(&message)) {
-    *this = {};
     m_scene = load->uri;
+    std::erase_if(m_newest, [](const auto& entry) { return isOfTheScene(entry.first); });
   }
   if (const auto* batch = std::get_if<protocol::Batch>(&message))
     for (const protocol::Edit& edit : batch->edits) addEdit(edit);
@@ -42,17 +45,27 @@ void EditSummary::addEdit(const protocol::Edit& edit) {
 }
 
 void EditSummary::addTechnique(const json& edit) {
-  const bool same = !m_techniques.empty() &&
-                    (!edit.contains("technique") || m_techniques.back().value("technique", "") == edit["technique"]);
-  if (!same) return m_techniques.push_back(edit);
+  const std::string last = m_techniques.empty() ? "" : m_techniques.back().value("technique", "");
+  const bool named = edit.contains("technique");
+  if (m_techniques.empty() || (named && last != edit["technique"])) {
+    // From one technique to another nothing is left of before. Which one a first edit without a name was about is not known.
+    if (!last.empty()) m_techniques.clear();
+    m_techniques.push_back(edit);
+    return;
+  }
   if (edit.contains("parameters")) m_techniques.back()["parameters"].update(edit["parameters"]);
 }
 
 std::vector<protocol::ClientMessage> EditSummary::messages() const {
   std::vector<protocol::ClientMessage> all;
   if (!m_scene.empty()) all.push_back(protocol::Load{1, m_scene});
-  for (const json& edit : m_techniques) all.push_back(messageOf(edit));
-  for (const auto& [subject, edit] : m_newest) all.push_back(messageOf(edit));
+  for (const json& edit : m_techniques) all.push_back(messageOf({edit}));
+  // A technique may need the size, and the size the technique: they come in one.
+  const auto size = m_newest.find("image");
+  const bool both = size != m_newest.end() && !m_techniques.empty();
+  if (both) all.back() = messageOf({size->second, m_techniques.back()});
+  for (const auto& [subject, edit] : m_newest)
+    if (!both || subject != "image") all.push_back(messageOf({edit}));
   return all;
 }
 

@@ -12,9 +12,10 @@ namespace limn::server {
 /// The newest value of everything that edits have set: what an old scene needs to become the present one.
 class EditSummary {
  public:
-  /// A `load` forgets all before it; edits of `batch` are added in their order; other messages are nothing.
+  /// A `load` forgets what was edited of the scene before it; edits of `batch` are added in their order; other messages are
+  /// nothing.
   void add(const protocol::ClientMessage& message);
-  /// The fewest messages that say the same: maybe a `load`, then a `batch` of one for each thing that was edited.
+  /// Few messages that say the same: maybe a `load`, then a `batch` for each thing that was edited.
   std::vector<protocol::ClientMessage> messages() const;
 
  private:
@@ -23,7 +24,7 @@ class EditSummary {
 
   std::string m_scene;                               ///< uri of the last `load`; empty: none
   std::map<std::string, nlohmann::json> m_newest;    ///< edits by what they are about
-  std::vector<nlohmann::json> m_techniques;          ///< a change of technique begins with defaults: their order matters
+  std::vector<nlohmann::json> m_techniques;          ///< in their order; at most one without a name, and the newest with one
 };
 
 }  // namespace limn::server

@@ -10,7 +10,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <optional>
 #include <utility>
 
 #include "protocol/frame.hpp"
@@ -49,13 +48,10 @@ std::string linesOf(std::span<const protocol::ClientMessage> messages) {
   return lines;
 }
 
-/// The message of a line without its end; nothing when it is torn or wrong.
-std::optional<protocol::ClientMessage> messageOf(std::string_view line) {
-  if (line.size() <= kSumDigits || line[kSumDigits] != ' ') return std::nullopt;
-  const std::string_view json = line.substr(kSumDigits + 1);
-  if (sumOf(json) != line.substr(0, kSumDigits)) return std::nullopt;
-  Result<protocol::ClientMessage> message = protocol::decodeClient(json);
-  return message ? std::optional(message.take()) : std::nullopt;
+/// Whether a line, without its end, is neither torn nor wrong.
+bool isWhole(std::string_view line) {
+  if (line.size() <= kSumDigits || line[kSumDigits] != ' ') return false;
+  return sumOf(line.substr(kSumDigits + 1)) == line.substr(0, kSumDigits);
 }
 
 /// Whether a power cut may take them: where somebody looks from is found again at once.
@@ -85,7 +81,7 @@ bool writeAll(int fd, std::string_view text) {
 
 Result<std::unique_ptr<Journal>> Journal::open(const fs::path& file) {
   std::unique_ptr<Journal> journal(new Journal(file));
-  for (const auto step : {&Journal::lock, &Journal::openFile, &Journal::read, &Journal::countStart})
+  for (const auto step : {&Journal::lock, &Journal::openFile, &Journal::read})
     if (Result<void> done = (journal.get()->*step)(); !done) return done.error();
   return journal;
 }
@@ -119,19 +115,24 @@ Result<void> Journal::read() {
   if (!text.starts_with(kTitle)) return Error{"bad-file", "this is no journal", m_file.string()};
   size_t at = kTitle.size();
   for (size_t end; (end = text.find('\n', at)) != text.npos; at = end + 1) {
-    const std::optional<protocol::ClientMessage> message = messageOf(text.substr(at, end - at));
-    if (!message) break;
-    m_summary.add(*message);
+    const std::string_view line = text.substr(at, end - at);
+    if (!isWhole(line)) break;
+    const Result<protocol::ClientMessage> message = protocol::decodeClient(line.substr(kSumDigits + 1));
+    if (message) m_summary.add(*message);
+    else logWarning(m_file.string() + ": an edit of another version is passed over: " + message.error().text());
   }
   if (at < text.size())
     logWarning(m_file.string() + ": " + std::to_string(text.size() - at) + " bytes at the end are torn and cut off");
   if (ftruncate(m_fd, off_t(at)) != 0) return ioError(m_file, "cannot be written");
   m_bytes = at;
+  m_leastBytes = linesOf(m_summary.messages()).size();
   return {};
 }
 
 // The lock file says how often.
-Result<void> Journal::countStart() {
+Result<void> Journal::begin() {
+  if (messages().empty()) return {};
+  m_confirmed = false;
   char text[16] = {};
   (void)!pread(m_lock, text, sizeof text - 1, 0);
   const uint32_t before = uint32_t(std::strtoul(text, nullptr, 10));
@@ -140,7 +141,7 @@ Result<void> Journal::countStart() {
     return {};
   }
   logWarning(m_file.string() + ": the last " + std::to_string(before) + " starts with it came to nothing; it is set aside");
-  writeStarts(1);
+  confirm();
   return setAside();
 }
 
@@ -166,8 +167,7 @@ Result<void> Journal::append(std::span<const protocol::ClientMessage> messages) 
   }
   m_behind = false;
   m_bytes += lines.size();
-  if (m_bytes > kWorthRewriting && m_bytes > kRewriteFactor * linesOf(m_summary.messages()).size()) return rewrite();
-  return {};
+  return m_bytes > std::max(kWorthRewriting, kRewriteFactor * m_leastBytes) ? rewrite() : Result<void>();
 }
 
 Result<void> Journal::rewrite() {
@@ -176,12 +176,14 @@ Result<void> Journal::rewrite() {
   if (Result<void> written = writeFileAtomically(m_file, bytesOf(text)); !written) return written;
   if (Result<void> opened = openFile(); !opened) return opened;
   m_behind = false;
-  m_bytes = text.size();
+  m_bytes = m_leastBytes = text.size();
   return {};
 }
 
 Result<void> Journal::setAside() {
-  const fs::path aside = m_file.string() + ".aside";
+  fs::path aside;
+  std::error_code problem;
+  for (uint32_t n = 1; aside.empty() || fs::exists(aside, problem); ++n) aside = m_file.string() + ".aside." + std::to_string(n);
   if (std::rename(m_file.c_str(), aside.c_str()) != 0) return ioError(m_file, "cannot be set aside");
   m_summary = {};
   return rewrite();

@@ -15,10 +15,8 @@ namespace limn::server {
 /// the file has grown far beyond what it says it is written anew, atomically. One thread.
 class Journal {
  public:
-  /// Opens the file, or makes it, and reads it; from the first line on that is torn or wrong it is cut off. What was opened
-  /// kMostStarts times in a row without confirm() is set aside: it may be what ends the process. Errors: "io", "busy" where
-  /// another process has it open, "bad-file" for a file that is no journal.
-  static constexpr uint32_t kMostStarts = 3;
+  /// Opens the file, or makes it, and reads it; from the first line on that is torn or wrong it is cut off. Errors: "io",
+  /// "busy" where another process has it open, "bad-file" for a file that is no journal.
   static Result<std::unique_ptr<Journal>> open(const std::filesystem::path& file);
   ~Journal();
   Journal(const Journal&) = delete;
@@ -28,9 +26,13 @@ class Journal {
   std::vector<protocol::ClientMessage> messages() const { return m_summary.messages(); }
   /// `load`s and `batch`es. Errors: "io"; then the file holds none of them, and the next call tries again.
   Result<void> append(std::span<const protocol::ClientMessage> messages);
-  /// The process lives on with what the journal holds.
+  static constexpr uint32_t kMostStarts = 3;
+  /// A process is about to take up what the journal holds. Where so many before did and none came to confirm(), that may be
+  /// what ended them: it is set aside. Errors: "io".
+  Result<void> begin();
+  /// The process lives on with what the journal holds, or did not end because of it.
   void confirm();
-  /// Moves what there is to FILE.aside and goes on empty. Errors: "io".
+  /// Moves what there is to FILE.aside.N and goes on empty. Errors: "io".
   Result<void> setAside();
 
   const std::filesystem::path& file() const { return m_file; }
@@ -42,12 +44,12 @@ class Journal {
   Result<void> openFile();
   Result<void> read();
   Result<void> rewrite();
-  Result<void> countStart();
   void writeStarts(uint32_t count);
 
   std::filesystem::path m_file;
   int m_fd = -1, m_lock = -1;
   uint64_t m_bytes = 0;                ///< of whole lines in the file
+  uint64_t m_leastBytes = 0;           ///< that said the same when this was looked at last
   EditSummary m_summary;               ///< of all that was accepted, written or not
   bool m_behind = false;               ///< the file lacks something that was accepted
   bool m_confirmed = false;

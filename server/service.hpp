@@ -110,7 +110,8 @@ class Service : private TransportHandler {
   // service_journal.cpp: what outlives the process
   void rememberUnacknowledged(const Origin& from, protocol::ClientMessage message);
   void noteAccepted(const Origin& from);
-  void noteRefused(const ErrorReply& reply) const;
+  void noteTakenUp(const Origin& from);
+  void noteRefused(const ErrorReply& reply);
   void keepAccepted();
   void confirmJournal(double now);
 
@@ -145,6 +146,8 @@ class Service : private TransportHandler {
   std::map<std::pair<ConnectionId, uint32_t>, protocol::ClientMessage> m_unacknowledged;  ///< for the journal: the same
   std::vector<protocol::ClientMessage> m_accepted;          ///< since the journal was last written
   bool m_journalFails = false;             ///< and that was told
+  size_t m_takingUp = 0;                   ///< requests of the journal that were not answered yet
+  uint32_t m_takenUp = 0;                  ///< seq of the last that was
   std::set<ConnectionId> m_editors;        ///< edited since the others were last told
   bool m_describing = false;               ///< a describe of our own is on its way
   uint32_t m_loadedRevision = 0;           ///< of the scene that was loaded last; pictures below it show another

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "renderer/base/clock.hpp"
 #include "renderer/base/log.hpp"
@@ -13,25 +14,36 @@ constexpr ConnectionId kJournal = std::numeric_limits<ConnectionId>::max();  // 
 constexpr double kSafeSeconds = 60.0;
 constexpr size_t kMostRequests = Mailbox::kMaxPending / 2;
 
+/// Edits that go together. The image of a sky is there when it is read: what else an edit says of the sky must not come so late, over
+/// what a client says meanwhile.
+std::vector<std::vector<protocol::Edit>> groupsOf(const protocol::Batch& batch) {
+  const auto* sky = batch.edits.size() == 1 ? std::get_if<protocol::EnvironmentEdit>(&batch.edits[0]) : nullptr;
+  if (!sky || !sky->image || sky->image->empty()) return {batch.edits};
+  protocol::EnvironmentEdit light = *sky, image;
+  image.image = std::exchange(light.image, std::nullopt);
+  return {{light}, {image}};
+}
+
 }  // namespace
 
 void Service::takeUp(const std::vector<protocol::ClientMessage>& messages) {
-  std::vector<const protocol::Batch*> batches;
+  std::vector<std::vector<protocol::Edit>> groups;
   for (const protocol::ClientMessage& message : messages)
-    if (const auto* batch = std::get_if<protocol::Batch>(&message)) batches.push_back(batch);
-  // A request holds one edit, so that one which the scene has no place for any more takes no other along; where there are more
-  // than the mailbox holds, a few share one.
-  const size_t shared = batches.size() / kMostRequests + 1;
-  uint32_t seq = 0;
-  for (size_t first = 0; first < batches.size(); first += shared) {
-    EditJob job{{{kJournal, ++seq}, {}, nowSeconds()}, {}};
+    if (const auto* batch = std::get_if<protocol::Batch>(&message))
+      for (std::vector<protocol::Edit>& group : groupsOf(*batch)) groups.push_back(std::move(group));
+  // A request for each, so that one which the scene has no place for any more takes no other along; where there are more than the
+  // mailbox holds, a few share one.
+  const size_t shared = groups.size() / kMostRequests + 1;
+  for (size_t first = 0; first < groups.size(); first += shared) {
+    EditJob job{{{kJournal, uint32_t(first) + 1}, {}, nowSeconds()}, {}};
     View view = m_view;
-    for (size_t i = first; i < std::min(batches.size(), first + shared); ++i)
-      for (const protocol::Edit& edit : batches[i]->edits) addEdit(job, edit, view);
+    for (size_t i = first; i < std::min(groups.size(), first + shared); ++i)
+      for (const protocol::Edit& edit : groups[i]) addEdit(job, edit, view);
     const bool taken = job.images.empty() ? m_mailbox.push(std::move(job.request)) : m_loader->request(std::move(job));
-    if (!taken) logWarning("an edit of the journal is lost: too many wait");
+    m_takingUp += taken;
+    if (!taken) logWarning("an edit of the journal is not taken up: too many wait");
   }
-  if (seq > 0) logInfo("edits of the journal are taken up: " + std::to_string(batches.size()));
+  if (!groups.empty()) logInfo("edits of the journal are taken up: " + std::to_string(groups.size()));
 }
 
 void Service::rememberUnacknowledged(const Origin& from, protocol::ClientMessage message) {
@@ -43,19 +55,31 @@ void Service::noteAccepted(const Origin& from) {
   if (accepted) m_accepted.push_back(std::move(accepted.mapped()));
 }
 
-void Service::noteRefused(const ErrorReply& reply) const {
-  if (reply.to.client == kJournal) logWarning("an edit of the journal does not fit any more: " + reply.error.text());
+void Service::noteTakenUp(const Origin& from) {
+  if (from.client != kJournal) return;
+  --m_takingUp;
+  m_takenUp = std::max(m_takenUp, from.seq);
 }
 
-// A picture of what the journal holds was made, or a while has passed in which nobody wanted one.
+void Service::noteRefused(const ErrorReply& reply) {
+  if (reply.to.client != kJournal) return;
+  --m_takingUp;
+  logWarning("an edit of the journal does not fit any more: " + reply.error.text());
+}
+
+// A picture of all that the journal holds was made, or a while has passed in which nobody wanted one.
 void Service::confirmJournal(double now) {
-  if (m_config.journal && (m_frames.newest() || now - m_begunAt > kSafeSeconds)) m_config.journal->confirm();
+  if (!m_config.journal || m_takingUp > 0) return;
+  const std::shared_ptr<const Frame> newest = m_frames.newest();
+  const auto shows = [&](const Origin& applied) { return applied.client == kJournal && applied.seq >= m_takenUp; };
+  const bool shown = newest && (m_takenUp == 0 || std::any_of(newest->info.applied.begin(), newest->info.applied.end(), shows));
+  if (shown || now - m_begunAt > kSafeSeconds) m_config.journal->confirm();
 }
 
 // Before any acknowledgement leaves: these are only queued while replies are routed.
 void Service::keepAccepted() {
   if (m_accepted.empty()) return;
-  m_config.journal->confirm();
+  if (m_takingUp == 0) m_config.journal->confirm();
   const Result<void> kept = m_config.journal->append(m_accepted);
   m_accepted.clear();
   if (!kept && !m_journalFails) logWarning(kept.error().text() + "; edits go on, and what is accepted will be kept when it can be");

@@ -36,7 +36,7 @@ struct ReplyHandler {
     } else {
       service.m_unacknowledged.erase({ack.to.client, ack.to.seq});
     }
-    if (!session) return;
+    if (!session) return service.noteTakenUp(ack.to);
     doneReading(ack.to.seq);
     if (effective) session->lastEffectiveSeq = std::max(session->lastEffectiveSeq, ack.to.seq);
     else forgetEdit(ack.to.seq);

@@ -1,5 +1,6 @@
 #include "renderer/base/file_bytes.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -16,6 +17,14 @@ struct CloseFile {
 using File = std::unique_ptr<FILE, CloseFile>;
 
 Error ioError(const std::filesystem::path& file, const std::string& what) { return {"io", what, file.string()}; }
+
+/// The new name outlives a loss of power. Where a directory cannot be synced there is nothing to be done about it.
+void syncDirectory(const std::filesystem::path& directory) {
+  const int fd = open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return;
+  (void)!fsync(fd);
+  close(fd);
+}
 
 }  // namespace
 
@@ -34,7 +43,10 @@ Result<void> writeFileAtomically(const std::filesystem::path& file, std::span<co
   written = fsync(fileno(out.get())) == 0 && written;
   const int why = errno;
   out.reset();
-  if (written && std::rename(beside.c_str(), file.c_str()) == 0) return {};
+  if (written && std::rename(beside.c_str(), file.c_str()) == 0) {
+    syncDirectory(file.parent_path());
+    return {};
+  }
   const std::string reason = std::strerror(written ? errno : why);
   std::remove(beside.c_str());
   return ioError(file, "cannot be written: " + reason);

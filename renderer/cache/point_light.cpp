@@ -180,7 +180,7 @@ void PointLightCache::recordRelight(vk::CommandRecorder& recorder, const PointLi
                                    samples,
                                    work.samplesBefore + done,
                                    work.seed,
-                                   m_lobesKept,
+                                   m_lobesKept && done == 0,  // what is left over is too little to fill them again
                                    owners};
     m_relight->record(recorder, all, push, workgroups(slotCount * m_layout.clusterCount));
     recorder.barrier();

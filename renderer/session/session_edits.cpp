@@ -126,8 +126,8 @@ Result<Session::Impl::SetupOutcome> Session::Impl::applySetup(const EditRequest&
   const Result<void> taken = takeSetup(wanted, planRestart({}, outcome.parameterCost, outcome.sizeChanged).cost);
   if (taken) return outcome;
   if (taken.error().code == "device-lost") return taken.error();
-  if (auto restored = takeSetup(before, CostClass::rebuild); !restored) return restored.error();
-  if (wanted.technique != before.technique) techniques.erase(wanted.technique);  // with what memory it has
+  if (setup() != before)
+    if (auto restored = restoreSetup(before); !restored) return restored.error();
   outcome.refusal = Error{taken.error().code, taken.error().message, place};
   return outcome;
 }

@@ -40,6 +40,7 @@ struct Session::Impl {
   void setParameters(const ParameterValues& values);
   FilmSetup setup() const { return {config.width, config.height, technique->info().name, parameters}; }
   Result<void> takeSetup(const FilmSetup& wanted, CostClass cost);
+  Result<void> restoreSetup(const FilmSetup& before);
   Result<void> showScene();
   Result<void> resize(uint32_t width, uint32_t height);
   Result<void> syncScene(const ChangeSet& changes);

@@ -115,6 +115,18 @@ Result<void> Session::Impl::takeSetup(const FilmSetup& wanted, CostClass cost) {
   return {};
 }
 
+// What was too large goes first.
+Result<void> Session::Impl::restoreSetup(const FilmSetup& before) {
+  const std::string refused = technique->info().name;
+  if (refused != before.technique) {
+    chooseTechnique(before.technique);
+    techniques.erase(refused);
+  }
+  film.reset();
+  if (auto done = resize(before.width, before.height); !done) return done;
+  return takeSetup(before, CostClass::rebuild);
+}
+
 Result<void> Session::Impl::showScene() {
   if (auto done = syncScene(wholeScene()); !done) return done;
   if (auto done = writeCamera(); !done) return done;

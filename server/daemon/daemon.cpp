@@ -1,6 +1,7 @@
 #include "server/daemon/daemon.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <filesystem>
 
@@ -63,46 +64,63 @@ Result<void> checkOptions(const DaemonOptions& options) {
   return {};
 }
 
-/// The journal of the scene, whose last `load` becomes the scene to begin with. Null where none is wanted.
-Result<std::shared_ptr<Journal>> openJournal(DaemonOptions& options) {
+/// The journal of the scene; null where none is wanted.
+Result<std::shared_ptr<Journal>> openJournal(const DaemonOptions& options) {
   if (options.journalDir.empty()) return std::shared_ptr<Journal>();
   const Result<std::filesystem::path> file = journalFileFor(options.journalDir, options.scene);
   if (!file) return file.error();
   Result<std::unique_ptr<Journal>> opened = Journal::open(*file);
   if (!opened) return opened.error();
-  std::shared_ptr<Journal> journal = opened.take();
-  for (const protocol::ClientMessage& message : journal->messages())
-    if (const auto* load = std::get_if<protocol::Load>(&message)) {
-      const Result<std::filesystem::path> scene = resolveAsset(options.assetRoot, load->uri);
-      if (scene) options.scene = *scene;
-      else if (Result<void> aside = journal->setAside(); !aside) return aside.error();
-      if (!scene) logWarning("the scene that was loaded last is gone, its edits are set aside: " + scene.error().text());
-      break;
-    }
-  return journal;
+  return std::shared_ptr<Journal>(opened.take());
 }
 
-Result<void> serve(DaemonOptions options, SignalWatcher& signals) {
-  Result<std::shared_ptr<Journal>> journal = openJournal(options);
-  if (!journal) return journal.error();
+/// The scene to begin with: that of the journal's last `load`, where there is one.
+Result<std::filesystem::path> sceneOf(const DaemonOptions& options, Journal& journal) {
+  for (const protocol::ClientMessage& message : journal.messages()) {
+    const auto* load = std::get_if<protocol::Load>(&message);
+    if (!load) continue;
+    const Result<std::filesystem::path> scene = resolveAsset(options.assetRoot, load->uri);
+    if (scene) return scene;
+    logWarning("the scene that was loaded last is gone, its edits are set aside: " + scene.error().text());
+    if (Result<void> aside = journal.setAside(); !aside) return aside.error();
+  }
+  return options.scene;
+}
+
+/// Has the renderer take up what the journal holds; gives the scene to begin with.
+Result<std::filesystem::path> takeUp(const DaemonOptions& options, Journal& journal, Service& service) {
+  if (Result<void> begun = journal.begin(); !begun) return begun.error();
+  const Result<std::filesystem::path> scene = sceneOf(options, journal);
+  if (scene) service.takeUp(journal.messages());
+  return scene;
+}
+
+Result<void> serve(const DaemonOptions& options, SignalWatcher& signals) {
+  Result<std::shared_ptr<Journal>> opened = openJournal(options);
+  if (!opened) return opened.error();
+  const std::shared_ptr<Journal> journal = opened.take();
   Mailbox mailbox;
   mailbox.push(WatchRequest{false});  // nobody looks until the service says so: no work is done before
   FrameSlot frames;
   StatusQueue replies;
   RenderThread renderer(options, mailbox, frames, replies);
-  if (Result<void> opened = renderer.opened(); !opened) return opened;
+  if (Result<void> ready = renderer.opened(); !ready) return ready;
 
   ServiceConfig config = serviceConfig(options);
-  config.journal = journal.take();
-  Result<std::unique_ptr<Service>> opened = Service::open(config, mailbox, frames, replies);
-  if (!opened) return opened.error();
-  Service& service = **opened;
-  if (config.journal) service.takeUp(config.journal->messages());
+  config.journal = journal;
+  const Result<std::unique_ptr<Service>> served = Service::open(config, mailbox, frames, replies);
+  if (!served) return served.error();
+  Service& service = **served;
+  Result<std::filesystem::path> scene = options.scene;
+  if (journal) scene = takeUp(options, *journal, service);
+  if (!scene) return scene.error();
   signals.start([&] {
     logInfo("asked to end: clients are told");
     service.drain();
   });
+  std::atomic<bool> begun = false;
   const auto ready = [&] {
+    begun = true;
     service.setReady(true);
     std::printf("listening on %s\n", address(options, service.port()).c_str());
     std::fflush(stdout);
@@ -111,12 +129,12 @@ Result<void> serve(DaemonOptions options, SignalWatcher& signals) {
     service.setReady(false);
     service.drain();
   };
-  renderer.start(ready, ended);
+  renderer.start(*scene, ready, ended);
   service.run();
   // Render thread and watcher reach into the service: they end first. A second signal ends the process whatever it waits for.
   Result<void> outcome = renderer.finish();
   service.finishWork();
-  if (outcome && config.journal) config.journal->confirm();
+  if (journal && (outcome || !begun)) journal->confirm();  // what cannot even be loaded is not the edits' fault
   signals.stop();
   return outcome;
 }

@@ -48,38 +48,39 @@ RenderThread::~RenderThread() {
   if (m_thread.joinable()) (void)finish();
 }
 
-void RenderThread::start(std::function<void()> ready, std::function<void()> ended) {
+void RenderThread::start(std::filesystem::path scene, std::function<void()> ready, std::function<void()> ended) {
   m_started = true;
-  m_startPromise.set_value({std::move(ready), std::move(ended)});
+  m_startPromise.set_value({std::move(scene), std::move(ready), std::move(ended)});
 }
 
 Result<void> RenderThread::finish() {
   m_mailbox.close();
-  if (!m_started) start([] {}, [] {});
+  if (!m_started) start({}, [] {}, [] {});
   m_thread.join();
   return m_outcome;
 }
 
-Result<void> RenderThread::serve(Session& session, StatusQueue& replies, const Callbacks& callbacks) {
+Result<void> RenderThread::serve(Session& session, StatusQueue& replies, const Start& start) {
   // The first client's hello names the device: the status must be there before anybody is let in.
   Result<Status> status = session.status();
   if (!status) return status.error();
   replies.setStatus(status.take());
-  callbacks.ready();
+  start.ready();
   return session.run();
 }
 
-void RenderThread::run(const DaemonOptions& options, FrameSlot& frames, StatusQueue& replies) {
+void RenderThread::run(DaemonOptions options, FrameSlot& frames, StatusQueue& replies) {
   nameThread("limn-render");
   Result<std::unique_ptr<vk::Device>> device = openDevice(options);
   m_openedPromise.set_value(device ? Result<void>() : Result<void>(device.error()));
-  const Callbacks callbacks = m_start.get();
+  const Start start = m_start.get();
+  options.scene = start.scene;
   if (device && !m_mailbox.closed()) {
     Result<std::unique_ptr<Session>> session = makeSession(**device, options, m_mailbox, frames, replies);
-    m_outcome = session ? serve(**session, replies, callbacks) : Result<void>(session.error());
+    m_outcome = session ? serve(**session, replies, start) : Result<void>(session.error());
   }
   if (!m_outcome) replies.push(ErrorReply{{}, m_outcome.error()});
-  callbacks.ended();
+  start.ended();
 }
 
 }  // namespace limn::server

@@ -22,22 +22,25 @@ class RenderThread {
 
   /// Waits for the device. Errors: those of vk::Device::open.
   Result<void> opened() { return m_opened.get(); }
-  /// Loads the scene and renders until the mailbox is closed. `ready` is called when the first edit could be applied,
+  /// Loads a scene and renders until the mailbox is closed. `ready` is called when the first edit could be applied,
   /// `ended` at the end; both on the render thread. The boxes' wake functions are set by now.
-  void start(std::function<void()> ready, std::function<void()> ended);
+  void start(std::filesystem::path scene, std::function<void()> ready, std::function<void()> ended);
   /// Closes the mailbox, waits for the thread, and says why it ended.
   Result<void> finish();
 
  private:
-  struct Callbacks { std::function<void()> ready, ended; };
-  static Result<void> serve(Session& session, StatusQueue& replies, const Callbacks& callbacks);
-  void run(const DaemonOptions& options, FrameSlot& frames, StatusQueue& replies);
+  struct Start {
+    std::filesystem::path scene;
+    std::function<void()> ready, ended;
+  };
+  static Result<void> serve(Session& session, StatusQueue& replies, const Start& start);
+  void run(DaemonOptions options, FrameSlot& frames, StatusQueue& replies);
 
   Mailbox& m_mailbox;
   std::promise<Result<void>> m_openedPromise;
   std::future<Result<void>> m_opened = m_openedPromise.get_future();
-  std::promise<Callbacks> m_startPromise;
-  std::future<Callbacks> m_start = m_startPromise.get_future();
+  std::promise<Start> m_startPromise;
+  std::future<Start> m_start = m_startPromise.get_future();
   bool m_started = false;
   Result<void> m_outcome;   ///< written by the thread, read after it was joined
   std::thread m_thread;

@@ -151,7 +151,7 @@ class Render {
   }
 
   Result<void> interruptionError() const {
-    if (Interruption::signal() == 0) return {};
+    if (!m_stats.outcome.interrupted) return {};
     return Error{kInterrupted, "interrupted after " + std::to_string(m_stats.outcome.state.steps) + " passes; " +
                                    m_options.output + " holds them", ""};
   }

@@ -76,9 +76,7 @@ void addTurn(uint point, Surface s, uint turn, inout SideLight sum, inout uint d
   sum.front += !whole && front ? arriving : vec3(0.0);
   sum.back += whole || front ? vec3(0.0) : arriving;
   if (!kUseLobes || push.lobes == 0u || turn >= kLobesPerPoint) return;
-  uint places = kLobesPerPoint - push.lobeLights;
-  if (push.samplesBefore > 0u && push.samples < places) return;  // too few to take the place of all that are there
-  float share = whole ? 1.0 : 1.0 / float(min(push.samples, places));
+  float share = whole ? 1.0 : 1.0 / float(min(push.samples, kLobesPerPoint - push.lobeLights));
   bool shines = maxComponent(arriving) > 0.0 && (whole || index >= push.lobeLights);
   pointLobes[point].lobe[turn] =
       PointLobe(shines ? octEncode(light.dirW) : 0u, shines ? packRgbe(arriving * share) : 0u);

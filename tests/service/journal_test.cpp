@@ -78,16 +78,34 @@ TEST(EditSummary, keepsTheNewestOfEachThing) {
   const Messages before = summaryOf(edits, 6);
   ASSERT_EQ(before.size(), 4u) << "technique, view, environment and one material";
   EXPECT_NE(std::find(before.begin(), before.end(), edited(both)), before.end());
-  EXPECT_EQ(summaryOf(edits, edits.size()), (Messages{protocol::Load{1, "rooms/käse.glb"}, view(4.0), roughness(1, 0.5f)}))
-      << "another scene has nothing of the one before";
+  const Messages after = summaryOf(edits, edits.size());
+  ASSERT_EQ(after.size(), 5u);
+  EXPECT_EQ(after[0], protocol::ClientMessage(protocol::Load{1, "rooms/käse.glb"}));
+  EXPECT_EQ(after[2], edits[6]) << "another scene is shown by the same technique";
+  EXPECT_EQ(Messages(after.begin() + 3, after.end()), (Messages{view(4.0), roughness(1, 0.5f)}))
+      << "and has nothing else of the one before";
 }
 
 TEST(EditSummary, aChangeOfTechniqueBeginsWithDefaults) {
   EditSummary summary;
   const Messages edits{technique({}, {{"maxBounces", 3.0}}), technique("point-projection", {{"bounces", 2.0}}),
                        technique({}, {{"points", 65536.0}}), technique("path-tracing", {})};
-  for (const auto& edit : edits) summary.add(edit);
-  EXPECT_EQ(summary.messages(), (Messages{edits[0], technique("point-projection", {{"bounces", 2.0}, {"points", 65536.0}}), edits[3]}));
+  for (size_t i = 0; i < 3; ++i) summary.add(edits[i]);
+  EXPECT_EQ(summary.messages(), (Messages{edits[0], technique("point-projection", {{"bounces", 2.0}, {"points", 65536.0}})}));
+  summary.add(edits[3]);
+  EXPECT_EQ(summary.messages(), (Messages{edits[3]})) << "nothing is left of the technique before";
+}
+
+TEST(EditSummary, aSizeComesWithItsTechnique) {
+  EditSummary summary;
+  const protocol::ImageEdit size{640, 480};
+  protocol::ResolveEdit display;
+  display.exposure = 1.5f;
+  const protocol::TechniqueEdit chosen{"point-projection", {}};
+  for (const auto& edit : {edited(size), edited(display), edited(chosen), protocol::ClientMessage(protocol::Load{3, "b.glb"})})
+    summary.add(edit);
+  EXPECT_EQ(summary.messages(),
+            (Messages{protocol::Load{1, "b.glb"}, protocol::Batch{1, {size, chosen}}, edited(display)}));
 }
 
 TEST(Journal, givesBackWhatWasAppended) {
@@ -122,7 +140,6 @@ TEST(Journal, tornAnywhereItHoldsTheWholeLinesBefore) {
     const size_t count = kept > 0 ? kept - 1 : 0;
     {
       const auto journal = opened(torn);
-      journal->confirm();
       ASSERT_EQ(journal->messages(), summaryOf(edits, count)) << length << " bytes";
       append(*journal, {roughness(9, 0.5f)});
     }
@@ -194,13 +211,21 @@ TEST(Journal, refusesWhatIsNoneOrInUse) {
 TEST(Journal, isSetAsideWhenStartsWithItComeToNothing) {
   const test::ScratchDirectory scratch;
   const std::string file = scratch.file("room.edits");
-  append(*opened(file), {roughness(0, 0.25f)});
-  for (uint32_t i = 1; i < Journal::kMostStarts; ++i) EXPECT_EQ(opened(file)->messages().size(), 1u) << i;
-  EXPECT_TRUE(opened(file)->messages().empty());
-  EXPECT_NE(bytesOf(file + ".aside").find("0.25"), std::string::npos) << "nothing is thrown away";
+  const auto begun = [&] {
+    auto journal = opened(file);
+    EXPECT_TRUE(journal->begin().ok());
+    return journal;
+  };
+  for (const char* value : {"0.25", "0.75"}) {
+    append(*opened(file), {roughness(0, std::stof(value))});
+    for (uint32_t i = 0; i < Journal::kMostStarts; ++i) EXPECT_EQ(begun()->messages().size(), 1u) << i;
+    for (uint32_t i = 0; i < 2 * Journal::kMostStarts; ++i) EXPECT_TRUE(begun()->messages().empty()) << i;
+  }
+  EXPECT_NE(bytesOf(file + ".aside.1").find("0.25"), std::string::npos) << "nothing is thrown away";
+  EXPECT_NE(bytesOf(file + ".aside.2").find("0.75"), std::string::npos);
   append(*opened(file), {roughness(0, 0.5f)});
   for (uint32_t i = 0; i < 2 * Journal::kMostStarts; ++i) {
-    const auto journal = opened(file);
+    const auto journal = begun();
     EXPECT_EQ(journal->messages().size(), 1u) << i;
     journal->confirm();
   }

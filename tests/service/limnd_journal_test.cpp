@@ -98,6 +98,9 @@ TEST(LimndJournal, theSceneThatWasLoadedLastComesBack) {
     Daemon daemon(keptIn(scratch));
     TestClient client(daemon.port);
     client.greet(false);
+    const uint32_t shown = client.nextSeq();
+    client.send(protocol::Batch{shown, {protocol::ImageEdit{80, 48}, protocol::TechniqueEdit{"point-projection", {}}}});
+    client.awaitReply<protocol::Ack>(shown);
     const uint32_t seq = client.nextSeq();
     client.send(protocol::Load{seq, "cornell-glossy.glb"});
     client.awaitReply<protocol::Loaded>(seq);
@@ -113,6 +116,8 @@ TEST(LimndJournal, theSceneThatWasLoadedLastComesBack) {
   const auto scene = describe(client);
   EXPECT_EQ(scene.name, "cornell-glossy.glb");
   EXPECT_EQ(scene.hash, hash);
+  EXPECT_EQ(scene.technique, "point-projection");
+  EXPECT_EQ(scene.width, 80u);
 }
 
 }  // namespace

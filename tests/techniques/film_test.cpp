@@ -73,7 +73,8 @@ TEST(Film, DepthIsMeasuredFromTheEye) {
       SessionConfig config = smallPicture();
       config.technique = technique;
       config.sampleCount = 2;
-      for (const float depth : layer(rendered(b.scene, config), "depth")) ASSERT_NEAR(depth, 5.0, 1e-3);
+      const FilmImage film = rendered(b.scene, config);
+      for (const float depth : layer(film, "depth")) ASSERT_NEAR(depth, 5.0, 1e-3);
     }
 }
 
