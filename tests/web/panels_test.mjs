@@ -131,8 +131,11 @@ test('a picture of the size of the window follows the window', async () => {
   assert.equal(await size.inputValue(), 'window');
   await size.selectOption('256x256');
   await page.setViewportSize({ width: 1280, height: 800 });
+  // Nothing may follow, and no event tells of that: this waits longer than a resized window takes to settle (250 ms).
+  await page.waitForTimeout(1000);
   await settle(page, 0);
   assert.equal(await size.inputValue(), '256x256');
+  assert.deepEqual([server.world.scene.width, server.world.scene.height], [256, 256]);
 });
 
 test('nothing went wrong in the page', async () => {

@@ -83,7 +83,8 @@ new RenderPanel(byId('render'), model, {
   saveExr: () => request({ op: 'save' }),
   savePng: () => void savePng(),
   follow: (label, change) => desk.set(label, change),
-  onStageResize: (callback) => new ResizeObserver(callback).observe(stage.element),
+  // Not the stage's own: an error that wraps in the ledger changes that, and is no wish for another picture.
+  onWindowResize: (callback) => window.addEventListener('resize', callback),
   stageSize: () => ({
     width: stage.element.clientWidth * devicePixelRatio,
     height: stage.element.clientHeight * devicePixelRatio,

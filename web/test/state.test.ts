@@ -57,6 +57,25 @@ describe('Model', () => {
     expect(withEdit(scene, { target: 'technique', technique: 'path-tracing' }).parameters).toEqual({ maxBounces: 8 });
   });
 
+  it('places a node that has a matrix as the server does', () => {
+    const trs = { name: 'm', translation: [7, 8, 9], rotation: [0, 0, 0, 1], scale: [1, 1, 1] };
+    const axes = [1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0];
+    const sheared = { ...scene, nodes: [{ ...trs, matrix: [...axes, 7, 8, 9, 1] }] } as unknown as SceneMessage;
+    const placed = (fields: object) => withEdit(sheared, { target: 'node', node: 0, ...fields }).nodes[0];
+    const to = { translation: [1, 2, 3] };
+    expect(placed(to)).toEqual({ ...trs, ...to, matrix: [...axes, 1, 2, 3, 1] });
+    expect(placed({ ...to, scale: [2, 2, 2] })).toEqual({ ...trs, ...to, scale: [2, 2, 2] });
+    expect(placed({ rotation: [0, 0, 1, 0] })).toEqual({ ...trs, rotation: [0, 0, 1, 0] });
+    expect(sheared.nodes[0]?.matrix).toEqual([...axes, 7, 8, 9, 1]);
+  });
+
+  it('knows of an image when it was named, and of none when it was taken away', () => {
+    const named = withEdit(scene, { target: 'environment', image: 'sky.hdr' });
+    expect(named.environment).toEqual({ rotation: 0, hasImage: true, image: 'sky.hdr' });
+    expect(withEdit(named, { target: 'environment', rotation: 1 }).environment.hasImage).toBe(true);
+    expect(withEdit(named, { target: 'environment', image: '' }).environment.hasImage).toBe(false);
+  });
+
   it('keeps the selection through a description of the same scene, and drops it with another', () => {
     const model = new Model();
     model.setScene(scene);

@@ -18,6 +18,30 @@ export function directionOf(
 /** There the browser undoes what was typed. */
 const isTextField = (element: Element | null): boolean => element?.matches('input[type=text], textarea') ?? false;
 
+const isModifier = (event: Event): boolean => kModifiers.includes((event as KeyboardEvent).key);
+const isSlider = (target: EventTarget | null): boolean => (target as HTMLInputElement | null)?.type === 'range';
+
+/** Calls `end` where what comes next is no part of what the hand did so far. */
+export function watchGestures(root: EventTarget, end: () => void): void {
+  for (const type of ['pointerup', 'pointercancel']) root.addEventListener(type, end);
+  // A slider changes with every repeat of a held key.
+  root.addEventListener('change', (event) => {
+    if (!isSlider(event.target)) end();
+  });
+  root.addEventListener('keyup', (event) => {
+    if (!isModifier(event)) end();
+  });
+  // A Mac tells of no keyup while Meta is held. Capture comes before the edit that the key makes.
+  const capture = true;
+  root.addEventListener(
+    'keydown',
+    (event) => {
+      if (!(event as KeyboardEvent).repeat && !isModifier(event)) end();
+    },
+    capture,
+  );
+}
+
 /** The buttons and keys that undo and redo edits; also tells the history where gestures end. */
 export class HistoryControls {
   private readonly undo: HTMLButtonElement;
@@ -37,11 +61,7 @@ export class HistoryControls {
       event.preventDefault();
       travel(direction);
     });
-    for (const end of ['pointerup', 'pointercancel', 'change'])
-      window.addEventListener(end, () => history.endGesture());
-    window.addEventListener('keyup', (event) => {
-      if (!kModifiers.includes(event.key)) history.endGesture();
-    });
+    watchGestures(window, () => history.endGesture());
     this.show();
   }
 

@@ -184,7 +184,7 @@ function nodeSheet(scene: SceneMessage, node: number): Sheet {
   const mesh = item?.mesh;
   if (mesh !== undefined) facts.push(`mesh ${nameOf(scene.meshes[mesh], '', mesh)}`);
   if (item?.parent !== undefined) facts.push(`in ${nameOf(scene.nodes[item.parent]?.name, 'Node', item.parent)}`);
-  if (item?.matrix) facts.push('placed by a matrix, which an edit here replaces');
+  if (item?.matrix) facts.push('placed by a matrix, which a rotation or scale given here replaces');
   return {
     title: nameOf(item?.name, 'Node', node),
     target: 'node',

@@ -26,7 +26,7 @@ export interface SizeActions {
   follow(label: string, edit: Edit): void;
   /** Size of the stage in device pixels. */
   stageSize(): Size;
-  onStageResize(callback: () => void): void;
+  onWindowResize(callback: () => void): void;
 }
 
 const wordOf = ({ width, height }: Size): string => `${width}x${height}`;
@@ -45,6 +45,8 @@ export class PictureSize {
   private listed = '';
   private following: string | null = null;
   private asked = '';
+  /** The window came to rest while nobody could be asked for a picture of its size. */
+  private overdue = false;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
@@ -53,9 +55,9 @@ export class PictureSize {
   ) {
     this.element = selectField('Picture size', [], (value) => this.choose(value)).element;
     this.select = this.element.querySelector('select')!;
-    actions.onStageResize(() => {
-      clearTimeout(this.timer);
-      this.timer = setTimeout(() => this.follow(), kSettleMs);
+    actions.onWindowResize(() => this.followSoon());
+    model.on('scene', ({ cause }) => {
+      if (cause === 'joined' && this.overdue) this.followSoon();
     });
   }
 
@@ -91,9 +93,15 @@ export class PictureSize {
     this.actions.edit('Picture size', { target: 'image', ...size });
   }
 
+  private followSoon(): void {
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.follow(), kSettleMs);
+  }
+
   private follow(): void {
     const size = this.sizeToFollow();
-    if (!size || !this.model.connected() || wordOf(size) === this.asked) return;
+    this.overdue = size !== null && !this.model.connected();
+    if (!size || this.overdue || wordOf(size) === this.asked) return;
     this.asked = wordOf(size);
     this.actions.follow('Picture size', { target: 'image', ...size });
   }

@@ -1,6 +1,7 @@
 import type { Edit, SceneMessage } from '../protocol/messages.gen';
 import { editKey } from './edit_desk';
 import { inverseOf } from './inverse';
+import { withEdit } from './model';
 
 export interface HistoryHooks {
   scene(): SceneMessage | null;
@@ -15,11 +16,17 @@ interface Step {
   label: string;
   before: Edit;
   after: Edit;
+  /** The technique whose parameters these are; null where the step is about something else. */
+  technique: string | null;
 }
 
 const kDepth = 200;
 
-const sameEdit = (a: Edit, b: Edit): boolean => JSON.stringify(a) === JSON.stringify(b);
+const sameValues = (a: object, b: object): boolean => JSON.stringify(a) === JSON.stringify(b);
+
+/** The technique that an edit of parameters alone is about; null for any other edit. */
+const techniqueOf = (scene: SceneMessage, edit: Edit): string | null =>
+  edit.target === 'technique' && edit.technique === undefined ? scene.technique : null;
 
 /** The edits made by hand in this page, to be undone and redone. All edits of one thing in one gesture are a step. */
 export class EditHistory {
@@ -29,10 +36,13 @@ export class EditHistory {
 
   constructor(private readonly hooks: HistoryHooks) {}
 
-  /** Applies an edit and remembers what was there before. */
+  /** Applies an edit and remembers what was there before, where that can be put back. */
   edit(label: string, edit: Edit): void {
-    const before = this.inverse(edit);
-    if (before && !sameEdit(before, edit)) this.remember({ key: editKey(label, edit), label, before, after: edit });
+    const scene = this.hooks.scene();
+    const before = scene && inverseOf(scene, edit);
+    if (!before) this.cutOff();
+    else if (!sameValues(before, edit))
+      this.remember({ key: editKey(label, edit), label, before, after: edit, technique: techniqueOf(scene, edit) });
     this.hooks.apply(label, edit);
   }
 
@@ -68,25 +78,28 @@ export class EditHistory {
     this.hooks.onChange();
   }
 
-  private inverse(edit: Edit): Edit | null {
-    const scene = this.hooks.scene();
-    return scene && inverseOf(scene, edit);
+  /** An edit that cannot be taken back: what was undone no longer follows from what is there. */
+  private cutOff(): void {
+    this.endGesture();
+    this.undone = [];
+    this.hooks.onChange();
   }
 
   private remember(step: Step): void {
     const last = this.done.at(-1);
-    if (this.inGesture && last?.key === step.key) last.after = step.after;
+    const goesOn = this.inGesture && last?.key === step.key && last.technique === step.technique;
+    if (goesOn) last.after = step.after;
     else this.done = [...this.done, step].slice(-kDepth);
     this.inGesture = true;
     this.undone = [];
     this.hooks.onChange();
   }
 
-  /** Drops steps that change nothing any more: the server refused them, or somebody else was there first. */
+  /** Drops steps that are of no use any more: the server refused them, or somebody else was there first. */
   private travel(from: Step[], to: Step[], side: 'before' | 'after'): string | null {
     this.endGesture();
     let step = from.pop();
-    while (step && this.holds(step[side])) step = from.pop();
+    while (step && this.isPointless(step, side)) step = from.pop();
     if (step) {
       to.push(step);
       this.hooks.apply(step.label, step[side]);
@@ -95,9 +108,10 @@ export class EditHistory {
     return step?.label ?? null;
   }
 
-  /** True when the scene is as `edit` would make it, or cannot be made so. */
-  private holds(edit: Edit): boolean {
-    const now = this.inverse(edit);
-    return now === null || sameEdit(now, edit);
+  /** True when a step would change nothing that is known, or is about the parameters of another technique. */
+  private isPointless(step: Step, side: 'before' | 'after'): boolean {
+    const scene = this.hooks.scene();
+    if (!scene || (step.technique !== null && step.technique !== scene.technique)) return true;
+    return sameValues(withEdit(scene, step[side]), scene);
   }
 }

@@ -12,12 +12,10 @@ export function inverseOf(scene: SceneMessage, edit: Edit): Edit | null {
       return withValuesOf(scene.materials[edit.material], edit);
     case 'light':
       return withValuesOf(scene.lights[edit.light], edit);
-    case 'node': {
-      const node = scene.nodes[edit.node];
-      return node?.matrix ? null : withValuesOf(node, edit);
-    }
+    case 'node':
+      return losesMatrix(scene, edit) ? null : withValuesOf(scene.nodes[edit.node], edit);
     case 'environment':
-      return withValuesOf(scene.environment, edit);
+      return losesNamelessImage(scene, edit) ? null : withValuesOf(scene.environment, edit);
     case 'resolve':
       return withValuesOf(scene.resolve, edit);
     case 'image':
@@ -27,6 +25,17 @@ export function inverseOf(scene: SceneMessage, edit: Edit): Edit | null {
     case 'camera':
       return null;
   }
+}
+
+/** A matrix gives way to a rotation or a scale, and no edit brings it back; a translation it takes up. */
+function losesMatrix(scene: SceneMessage, edit: Edit & { target: 'node' }): boolean {
+  const turns = edit.rotation !== undefined || edit.scale !== undefined;
+  return turns && scene.nodes[edit.node]?.matrix !== undefined;
+}
+
+/** An image that came with the scene has no path by which an edit could name it again. */
+function losesNamelessImage({ environment }: SceneMessage, edit: Edit & { target: 'environment' }): boolean {
+  return edit.image !== undefined && environment.hasImage && environment.image === '';
 }
 
 /** `edit` with the values of `item`; null where that lacks one. */

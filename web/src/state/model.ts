@@ -1,4 +1,4 @@
-import type { Edit, SceneMessage, ServerHello, Status } from '../protocol/messages.gen';
+import type { Edit, NodeEdit, SceneMessage, SceneNode, ServerHello, Status } from '../protocol/messages.gen';
 import type { ConnectionState } from '../channel';
 
 /** What the panels show in detail. */
@@ -105,6 +105,17 @@ function selectionExists(scene: SceneMessage, selection: Selection): boolean {
 const replaceAt = <T>(list: readonly T[], index: number, change: Partial<T>): T[] =>
   list.map((item, i) => (i === index ? { ...item, ...change } : item));
 
+/** A node placed anew. As on the server, its matrix takes up a translation and gives way to a rotation or scale. */
+function placed(node: SceneNode, fields: Omit<NodeEdit, 'node'>): SceneNode {
+  const item = { ...node, ...fields };
+  if (!item.matrix) return item;
+  const { matrix, ...withoutMatrix } = item;
+  if (fields.rotation || fields.scale) return withoutMatrix;
+  const moved: typeof matrix = [...matrix];
+  moved.splice(12, 3, ...item.translation);
+  return { ...item, matrix: moved };
+}
+
 /** The scene with one edit applied. Pure. */
 export function withEdit(scene: SceneMessage, edit: Edit): SceneMessage {
   switch (edit.target) {
@@ -118,11 +129,12 @@ export function withEdit(scene: SceneMessage, edit: Edit): SceneMessage {
     }
     case 'node': {
       const { target: _, node, ...fields } = edit;
-      return { ...scene, nodes: replaceAt(scene.nodes, node, fields) };
+      return { ...scene, nodes: scene.nodes.map((item, i) => (i === node ? placed(item, fields) : item)) };
     }
     case 'environment': {
       const { target: _, ...fields } = edit;
-      return { ...scene, environment: { ...scene.environment, ...fields } };
+      const hasImage = fields.image === undefined ? {} : { hasImage: fields.image !== '' };
+      return { ...scene, environment: { ...scene.environment, ...fields, ...hasImage } };
     }
     case 'camera':
       return { ...scene, view: { ...scene.view, ...edit.view } };
