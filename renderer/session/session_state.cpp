@@ -61,7 +61,9 @@ Result<void> Session::Impl::init(Scene newScene, LoadReport newReport, const Ses
   given.parameters = config.parameters;
   const Edit edit(given);
   if (auto checked = checkEdit(std::span(&edit, 1), 0); !checked) return checked;
-  setParameters({given.parameters.begin(), given.parameters.end()});
+  ParameterValues wanted;
+  for (const auto& [parameter, value] : given.parameters) wanted[parameter] = value;  // of one given twice the last counts
+  setParameters(wanted);
   if (auto done = resize(config.width, config.height); !done) return done;
   const double begin = nowSeconds();
   if (auto done = syncScene(wholeScene()); !done) return done;
