@@ -8,9 +8,15 @@
 namespace limn::server::testing {
 namespace {
 
-std::vector<std::string> keptIn(const test::ScratchDirectory& scratch) {
-  return {"--asset-root", kScenes, "--journal", scratch.file("journal")};
-}
+/// A daemon with its journal in a directory, and a client of it that does not watch.
+struct Kept {
+  explicit Kept(const test::ScratchDirectory& scratch)
+      : daemon({"--asset-root", kScenes, "--journal", scratch.file("journal")}), client(daemon.port) {
+    client.greet(false);
+  }
+  Daemon daemon;
+  TestClient client;
+};
 
 /// The scene with all that the journal holds: it is asked for behind those edits.
 protocol::SceneMessage describe(TestClient& client) {
@@ -28,9 +34,8 @@ TEST(LimndJournal, everythingAcknowledgedOutlivesTheProcess) {
   const test::ScratchDirectory scratch;
   protocol::SceneMessage before;
   {
-    Daemon daemon(keptIn(scratch));
-    TestClient client(daemon.port);
-    client.greet(false);
+    Kept kept(scratch);
+    TestClient& client = kept.client;
     const auto scene = client.await<protocol::SceneMessage>();
     protocol::NodeEdit node;
     node.node = 1;
@@ -46,11 +51,10 @@ TEST(LimndJournal, everythingAcknowledgedOutlivesTheProcess) {
     client.awaitReply<protocol::Ack>(seq);
     endAfter(client, 8);
     before = describe(client);
-    kill(daemon);
+    kill(kept.daemon);
   }
-  Daemon daemon(keptIn(scratch));
-  TestClient client(daemon.port);
-  client.greet(false);
+  Kept kept(scratch);
+  TestClient& client = kept.client;
   const auto after = describe(client);
   EXPECT_EQ(after.hash, before.hash);
   EXPECT_EQ(after.view, before.view);
@@ -65,9 +69,8 @@ TEST(LimndJournal, killedInAStreamOfEditsItHasAllThatWereAcknowledged) {
   float least = 0.0f;                  // roughness that was acknowledged last
   float sent = 0.0f;
   for (const uint32_t acks : {1u, 7u, 23u}) {
-    Daemon daemon(keptIn(scratch));
-    TestClient client(daemon.port);
-    client.greet(false);
+    Kept kept(scratch);
+    TestClient& client = kept.client;
     const float found = describe(client).materials.at(0).roughness;
     if (least > 0.0f) {
       EXPECT_GE(found, least);
@@ -83,11 +86,10 @@ TEST(LimndJournal, killedInAStreamOfEditsItHasAllThatWereAcknowledged) {
     }
     client.awaitReply<protocol::Ack>(edits[acks - 1].first);
     least = edits[acks - 1].second;
-    kill(daemon);
+    kill(kept.daemon);
   }
-  Daemon daemon(keptIn(scratch));
-  TestClient client(daemon.port);
-  client.greet(false);
+  Kept kept(scratch);
+  TestClient& client = kept.client;
   EXPECT_GE(describe(client).materials.at(0).roughness, least);
 }
 
@@ -95,9 +97,8 @@ TEST(LimndJournal, theSceneThatWasLoadedLastComesBack) {
   const test::ScratchDirectory scratch;
   protocol::Hash hash;
   {
-    Daemon daemon(keptIn(scratch));
-    TestClient client(daemon.port);
-    client.greet(false);
+    Kept kept(scratch);
+    TestClient& client = kept.client;
     const uint32_t shown = client.nextSeq();
     client.send(protocol::Batch{shown, {protocol::ImageEdit{80, 48}, protocol::TechniqueEdit{"point-projection", {}}}});
     client.awaitReply<protocol::Ack>(shown);
@@ -108,11 +109,10 @@ TEST(LimndJournal, theSceneThatWasLoadedLastComesBack) {
     client.send(setRoughness(edit, 1, 0.625f));
     client.awaitReply<protocol::Ack>(edit);
     hash = describe(client).hash;
-    kill(daemon);
+    kill(kept.daemon);
   }
-  Daemon daemon(keptIn(scratch));
-  TestClient client(daemon.port);
-  client.greet(false);
+  Kept kept(scratch);
+  TestClient& client = kept.client;
   const auto scene = describe(client);
   EXPECT_EQ(scene.name, "cornell-glossy.glb");
   EXPECT_EQ(scene.hash, hash);
