@@ -35,8 +35,10 @@ HttpReply Service::onHttp(const HttpRequest& asked) {
   const AccessPolicy& access = m_config.transport.access;
   HttpRequest request = asked;
   std::string& path = request.headers.path;
-  if (path == "/healthz") return plain(200, "alive\n");
-  if (path == "/readyz") return m_ready && !m_transport->draining() ? plain(200, "ready\n") : plain(503, "not ready\n");
+  // A probe asks at the root; a page knows its own path alone.
+  const auto isProbe = [&](const char* name) { return path == name || path == access.basePath + name; };
+  if (isProbe("/healthz")) return plain(200, "alive\n");
+  if (isProbe("/readyz")) return m_ready && !m_transport->draining() ? plain(200, "ready\n") : plain(503, "not ready\n");
   if (const Verdict host = judgeHost(access, request.headers); !host.allowed())
     return plain(host.status, host.reason + "\n");
   if (path == "/metrics") {
