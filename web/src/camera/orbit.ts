@@ -35,6 +35,9 @@ export interface Box {
 
 // Nearest angle between the line of sight and `up` [rad]: below it "right" is no longer defined.
 const kPoleMargin = 0.02;
+const kWorldUp: Vec3 = [0, 1, 0];
+// Two unit vectors to the right that differ by less make the same picture.
+const kLevelSlack = 1e-4;
 const kNearestShare = 1e-4;
 const kFarthestShare = 100;
 
@@ -44,6 +47,17 @@ export const forwardOf = (pose: Pose): Vec3 => normalize(sub(pose.target, pose.e
 export function rightOf(pose: Pose): Vec3 {
   const right = normalize(cross(forwardOf(pose), pose.up));
   return length(right) > 0 ? right : anyPerpendicular(normalize(pose.up));
+}
+
+/**
+ * The pose with the world's up, about which an orbit leaves the horizon level, where that makes the same picture. A rolled
+ * camera and one that looks straight up or down keep their own.
+ */
+export function levelled(pose: Pose): Pose {
+  const across = cross(forwardOf(pose), kWorldUp);
+  if (length(across) <= Math.sin(kPoleMargin)) return pose;
+  const isLevel = length(sub(rightOf(pose), normalize(across))) < kLevelSlack;
+  return isLevel ? { ...pose, up: kWorldUp } : pose;
 }
 
 /** Turns eye and target about `pivot`: `yaw` about up, `pitch` about the picture's right axis, up to the poles [rad]. */

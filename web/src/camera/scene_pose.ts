@@ -1,13 +1,14 @@
 import { applyLinear, worldPlacement } from '../math/placement';
 import { add, dot, length, lerp, normalize, scale, sub } from '../math/vec3';
 import type { SceneMessage, View } from '../protocol/messages.gen';
-import type { Box, Pose } from './orbit';
+import { levelled, type Box, type Pose } from './orbit';
 
 const kDefaultLens = { perspective: true, yfov: 0.8, ymag: 1, znear: 0.01 };
 
+/** The viewer's camera as the server tells it, whose `up` is often at a right angle to the line of sight. */
 export function poseFromView(view: View): Pose {
   const { eye, target, up, ...lens } = view;
-  return { eye, target, up, lens: { ...kDefaultLens, ...lens } };
+  return levelled({ eye, target, up, lens: { ...kDefaultLens, ...lens } });
 }
 
 export function viewFromPose(pose: Pose): View {
@@ -27,10 +28,10 @@ export function poseOfCamera(scene: SceneMessage, camera: number): Pose | null {
   const radius = length(sub(scene.boundsHigh, scene.boundsLow)) / 2;
   const distance = Math.max(dot(toMiddle, forward), radius * 0.1);
   const { perspective, yfov, ymag, znear } = lens;
-  return {
+  return levelled({
     eye: placement.origin,
     target: add(placement.origin, scale(forward, distance)),
     up: normalize(applyLinear(placement, [0, 1, 0])),
     lens: { perspective, yfov, ymag, znear },
-  };
+  });
 }
