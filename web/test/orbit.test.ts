@@ -82,6 +82,15 @@ describe('dolly', () => {
     for (let i = 0; i < 200; i++) p = dolly(p, p.target, 2, 10);
     expect(distance(p.eye, p.target)).toBeCloseTo(1000, 6);
   });
+
+  it.each([true, false])('never goes the other way where it is beyond its limits; perspective: %s', (perspective) => {
+    const sizeOf = (p: Pose) => (perspective ? distance(p.eye, p.target) : p.lens.ymag);
+    const at = (size: number): Pose => ({ ...pose, eye: [0, 0, size], lens: { ...pose.lens, perspective, ymag: size } });
+    const zoomed = (size: number, factor: number) => sizeOf(dolly(at(size), pose.target, factor, 1));
+    expect([zoomed(1e-5, 0.9), zoomed(1e3, 1.1)]).toEqual([1e-5, 1e3]);
+    expect(zoomed(1e-5, 2)).toBeCloseTo(2e-5, 12);
+    expect(zoomed(1e3, 0.5)).toBeCloseTo(500, 9);
+  });
 });
 
 describe('frameBox', () => {

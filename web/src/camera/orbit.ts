@@ -95,15 +95,22 @@ export function pan(pose: Pose, pivot: Vec3, right: number, up: number): Pose {
   return { ...pose, eye: add(pose.eye, move), target: add(pose.target, move) };
 }
 
-/** Scales the distance to `pivot` by `factor` (< 1: nearer), within limits taken from the scene's radius [m]. */
+/** A length times `factor`, up to limits taken from the scene's radius [m]; one beyond them only comes back. */
+function scaledWithin(value: number, factor: number, sceneRadius: number): number {
+  const scaled = value * factor;
+  return factor < 1
+    ? Math.min(value, Math.max(sceneRadius * kNearestShare, scaled))
+    : Math.max(value, Math.min(sceneRadius * kFarthestShare, scaled));
+}
+
+/** Scales the distance to `pivot`, or what an orthographic lens takes in, by `factor` (< 1: nearer), within limits. */
 export function dolly(pose: Pose, pivot: Vec3, factor: number, sceneRadius: number): Pose {
   if (!pose.lens.perspective) {
-    return { ...pose, lens: { ...pose.lens, ymag: Math.max(pose.lens.ymag * factor, sceneRadius * kNearestShare) } };
+    return { ...pose, lens: { ...pose.lens, ymag: scaledWithin(pose.lens.ymag, factor, sceneRadius) } };
   }
   const distance = length(sub(pose.eye, pivot));
   if (distance === 0) return pose;
-  const wanted = Math.min(sceneRadius * kFarthestShare, Math.max(sceneRadius * kNearestShare, distance * factor));
-  const share = wanted / distance;
+  const share = scaledWithin(distance, factor, sceneRadius) / distance;
   const move = (p: Vec3): Vec3 => lerp(pivot, p, share);
   return { ...pose, eye: move(pose.eye), target: move(pose.target) };
 }
