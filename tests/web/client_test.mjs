@@ -264,11 +264,14 @@ test('another picture size arrives on the canvas', async () => {
 });
 
 test('a camera of the file moves the view', async () => {
+  await pick(page, 0.5, 0.52);
   await page.locator('[role=treeitem][data-key="camera:0"]').click();
   await waitFor(
     page,
     () => Math.abs(window.limn.rig.current().eye[1] - 1.4) < 1e-9 && window.limn.rig.current().eye[2] === 5,
   );
+  const pivot = await page.evaluate(() => window.limn.rig.pivot());
+  assert.deepEqual(pivot, (await pose()).target, 'it turns about its own target, not about what was picked before');
 });
 
 test('the field of view stays as it was typed, and follows the camera back', async () => {

@@ -155,7 +155,7 @@ function pick(clientX: number, clientY: number): void {
 
 function useCamera(index: number): void {
   const pose = model.scene ? poseOfCamera(model.scene, index) : null;
-  if (pose) whenConnected(() => rig.goTo(pose));
+  if (pose) whenConnected(() => rig.lookFrom(pose));
 }
 
 function adoptScene(scene: SceneMessage): void {

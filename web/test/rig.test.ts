@@ -65,6 +65,13 @@ describe('CameraRig', () => {
     expect(rig.current()?.eye[0]).toBeCloseTo(1, 9);
   });
 
+  it('turns about the target of another view that was chosen', () => {
+    const { rig } = makeRig();
+    rig.setPivot([0, 0, 4]);
+    rig.lookFrom({ ...pose, eye: [3, 0, 0], target: [1, 0, 0] });
+    expect(rig.pivot()).toEqual([1, 0, 0]);
+  });
+
   it('travels over several frames to a framed view, or at once with reduced motion', () => {
     const slow = makeRig(false);
     slow.rig.frame();

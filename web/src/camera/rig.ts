@@ -87,8 +87,7 @@ export class CameraRig {
 
   /** All of the scene in the picture, seen from the present direction. */
   frame(): void {
-    this.picked = null;
-    if (this.pose) this.goTo(frameBox(this.pose, this.box, this.aspect));
+    if (this.pose) this.lookFrom(frameBox(this.pose, this.box, this.aspect));
   }
 
   /** The picked point in the middle of the picture. */
@@ -97,12 +96,17 @@ export class CameraRig {
   }
 
   reset(): void {
+    if (this.home) this.lookFrom(this.home);
+  }
+
+  /** Another view: from now on the camera turns about what that looks at, not about what was picked before. */
+  lookFrom(pose: Pose): void {
     this.picked = null;
-    if (this.home) this.goTo(this.home);
+    this.goTo(pose);
   }
 
   /** Travels to `to` in a quarter of a second, or at once where the person asked for less motion. */
-  goTo(to: Pose): void {
+  private goTo(to: Pose): void {
     if (!this.pose) return;
     if (this.hooks.reducedMotion()) {
       this.change(() => to);
