@@ -76,6 +76,16 @@ describe('Model', () => {
     expect(withEdit(named, { target: 'environment', image: '' }).environment.hasImage).toBe(false);
   });
 
+  it('shows the scene again as it is known, and not as one that was just joined', () => {
+    const model = new Model();
+    model.setScene(scene);
+    model.applyLocally({ target: 'resolve', exposure: 1 });
+    const shown: SceneMessage[] = [];
+    model.on('scene', (again) => shown.push(again));
+    model.showAgain();
+    expect(shown.map(({ cause, resolve }) => [cause, resolve.exposure])).toEqual([['asked', 1]]);
+  });
+
   it('keeps the selection through a description of the same scene, and drops it with another', () => {
     const model = new Model();
     model.setScene(scene);

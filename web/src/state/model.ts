@@ -67,9 +67,9 @@ export class Model {
     return this.connection.kind === 'connected' && this.synchronised;
   }
 
-  /** Lets everybody show the scene as it is known, over what was typed. */
+  /** Lets everybody show the scene as it is known, over what was typed. Nothing was joined or loaded by that. */
   showAgain(): void {
-    if (this.scene) this.emit('scene', this.scene);
+    if (this.scene) this.emit('scene', { ...this.scene, cause: 'asked' });
   }
 
   select(selection: Selection): void {
