@@ -103,6 +103,23 @@ test('a drag of a slider is undone as a whole, and redone', async () => {
   await settle(page, 0);
 });
 
+test('what was edited before a connection broke can be undone after it', async () => {
+  const before = server.world.scene.environment.rotation;
+  await page.locator('[role=treeitem][data-key="environment:0"]').click();
+  await typeNumber(page, '#inspector', 'Rotation', 20);
+  assert.notEqual(server.world.scene.environment.rotation, before);
+  await page.evaluate(() => {
+    window.joined = new Promise((resolve) =>
+      window.limn.model.on('scene', ({ cause }) => cause === 'joined' && resolve()),
+    );
+  });
+  for (const client of server.world.clients) client.socket.terminate();
+  await page.evaluate(() => window.joined);
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await settle(page, 0);
+  assert.equal(server.world.scene.environment.rotation, before);
+});
+
 test('the picture is saved as it is shown', async () => {
   await atRest(page);
   const waiting = page.waitForEvent('download');

@@ -161,7 +161,7 @@ function useCamera(index: number): void {
 function adoptScene(scene: SceneMessage): void {
   const fresh = scene.cause === 'loaded' || scene.cause === 'joined';
   if (scene.cause === 'loaded' || scene.name !== homeOf) rig.forgetHome();
-  if (fresh) history.clear();
+  history.onScene(scene);
   homeOf = scene.name;
   // A description that was made before our newest camera edit must not throw the camera back.
   if (fresh || (!rig.busy() && !desk.cameraPending())) rig.adopt(poseFromView(scene.view), boundsOf(scene));

@@ -181,7 +181,38 @@ describe('EditHistory', () => {
     const { page, history } = makeHistory();
     history.edit('Intensity', intensity(5));
     expect([page.changes, history.nextUndo()]).toEqual([1, 'Intensity']);
-    history.clear();
+    history.undo();
     expect([page.changes, history.nextUndo()]).toEqual([2, null]);
+  });
+
+  it('outlasts a connection', () => {
+    const { page, history } = makeHistory();
+    const roughnessNow = () => page.scene.materials[0]?.roughness;
+    history.onScene({ ...page.scene, cause: 'joined' });
+    history.edit('Roughness', roughness(0.1));
+    history.edit('Intensity', intensity(5));
+    history.undo();
+    history.onScene({ ...page.scene, cause: 'joined' });
+    history.onScene({ ...page.scene, cause: 'edited' });
+    expect([history.nextUndo(), history.nextRedo()]).toEqual(['Roughness', 'Intensity']);
+    history.undo();
+    expect(roughnessNow()).toBe(0.5);
+  });
+
+  it.each<Partial<SceneMessage>>([
+    { cause: 'loaded' },
+    { name: 'other.glb' },
+    { materials: [] },
+    { lights: [] },
+    { nodes: [] },
+  ])('begins anew with a scene of which %j', (fields) => {
+    const { page, history } = makeHistory();
+    const told: SceneMessage = { ...page.scene, cause: 'joined' };
+    history.onScene(told);
+    history.edit('Roughness', roughness(0.1));
+    history.edit('Intensity', intensity(5));
+    history.undo();
+    history.onScene({ ...told, ...fields });
+    expect([history.nextUndo(), history.nextRedo()]).toEqual([null, null]);
   });
 });

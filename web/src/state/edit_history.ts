@@ -33,6 +33,7 @@ export class EditHistory {
   private done: Step[] = [];
   private undone: Step[] = [];
   private inGesture = false;
+  private things = '';
 
   constructor(private readonly hooks: HistoryHooks) {}
 
@@ -71,8 +72,14 @@ export class EditHistory {
     return this.undone.at(-1)?.label ?? null;
   }
 
-  /** Another scene: its things have other values. */
-  clear(): void {
+  /** Told of each scene. Steps hold absolute values: those of a lost connection are good as long as all things are there. */
+  onScene({ cause, name, materials, lights, nodes }: SceneMessage): void {
+    const things = [name, materials.length, lights.length, nodes.length].join();
+    if (cause === 'loaded' || things !== this.things) this.clear();
+    this.things = things;
+  }
+
+  private clear(): void {
     this.done = [];
     this.undone = [];
     this.hooks.onChange();
