@@ -145,6 +145,19 @@ test('keys act on the focused picture only', async () => {
   await settle(page, 2);
 });
 
+test('F shows all of the scene as it is by now', async () => {
+  const { world } = server;
+  const { boundsHigh } = world.scene;
+  world.scene.boundsHigh = [9, 3, 3]; // somebody moved something; pages hear of it when they ask
+  await page.locator('#stage').focus();
+  await page.keyboard.press('f');
+  await waitFor(page, () => Math.abs(window.limn.rig.current().target[0] - 3) < 1e-9);
+  world.scene.boundsHigh = boundsHigh;
+  await page.keyboard.press('r');
+  await waitFor(page, () => Math.abs(window.limn.rig.current().eye[2] - 5.2) < 1e-9);
+  await settle(page, 2);
+});
+
 test('picking opens the material and the object, in the panel and in the list', async () => {
   const picked = await pick(page, 0.5, 0.52);
   assert.equal(picked.material, 2);

@@ -28,8 +28,9 @@ import { formatError, formatNumber, formatSamples } from './ui/format';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 const requestFrame = (callback: (now: number) => void): void => void requestAnimationFrame(callback);
-// Requests that are no edits travel under this ticket; nobody waits for their seq.
+// Requests that are no edits travel under these tickets: the first where nobody waits for the answer.
 const kNoTicket = 0;
+const kFramingTicket = -1;
 // The browser reads a download after the click; its bytes stay for so long.
 const kDownloadMs = 30_000;
 
@@ -66,7 +67,7 @@ const link = new StreamLink(byId<HTMLCanvasElement>('picture'), socketUrl(), tok
   onFrame,
   onFile,
   onFault,
-  onSent: (ticket, seq, reason) => desk.onSent(ticket, seq, reason),
+  onSent,
 });
 const hook = makeTestHook(model, statistics, rig, desk, link);
 window.limn = hook;
@@ -96,12 +97,14 @@ bindControls(stage.element, {
   pan: (right, up) => whenConnected(() => rig.pan(right, up)),
   dolly: (factor) => whenConnected(() => rig.dolly(factor)),
   moveObject: (right, up) => whenConnected(() => mover.move(right, up)),
-  frame: () => whenConnected(() => rig.frame()),
+  // Where all is after an edit, only the server knows.
+  frame: () => whenConnected(() => link.send(kFramingTicket, { op: 'describe' })),
   centerPicked: () => whenConnected(() => rig.centerPicked()),
   reset: () => whenConnected(() => rig.reset()),
   click: pick,
 });
 let homeOf = ''; // name of the scene whose first view the rig remembers
+let framingSeq: number | null = null; // of the description that is asked for to frame what it tells of
 model.on('scene', adoptScene);
 
 /** The socket stands beside the page, whatever path the server is mounted on. */
@@ -164,12 +167,24 @@ function adoptScene(scene: SceneMessage): void {
   history.onScene(scene);
   homeOf = scene.name;
   // A description that was made before our newest camera edit must not throw the camera back.
-  if (fresh || (!rig.busy() && !desk.cameraPending())) rig.adopt(poseFromView(scene.view), boundsOf(scene));
+  if (fresh || (!rig.busy() && !desk.cameraPending())) rig.adopt(poseFromView(scene.view));
+  rig.setBounds(boundsOf(scene));
+  if (scene.seq === undefined || scene.seq !== framingSeq) return;
+  framingSeq = null;
+  rig.frame();
+}
+
+function onSent(ticket: number, seq: number | null, reason: string): void {
+  if (ticket === kFramingTicket) framingSeq = seq;
+  else desk.onSent(ticket, seq, reason);
 }
 
 function onState(state: ConnectionState): void {
   const was = model.connection.kind;
-  if (was === 'connected' && state.kind !== 'connected') desk.onDisconnected();
+  if (was === 'connected' && state.kind !== 'connected') {
+    desk.onDisconnected();
+    framingSeq = null;
+  }
   if (state.kind === 'connected') statistics.onConnected();
   model.setConnection(state);
   if (state.kind !== was) announcer.say('reason' in state ? `${state.kind}: ${state.reason}` : state.kind);

@@ -49,7 +49,7 @@ function makeMover() {
   const edits: Edit[] = [];
   const refusals: string[] = [];
   model.setScene(makeScene());
-  rig.adopt(pose, { low: [-1, -1, -1], high: [1, 1, 1] });
+  rig.adopt(pose);
   const edit = (_: string, change: Edit) => {
     model.applyLocally(change);
     edits.push(change);

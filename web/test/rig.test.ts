@@ -19,7 +19,8 @@ function makeRig(reducedMotion = true) {
     requestFrame: (callback) => queue.push(callback),
     reducedMotion: () => reducedMotion,
   });
-  rig.adopt(pose, box);
+  rig.adopt(pose);
+  rig.setBounds(box);
   /** One display frame at a time [ms]. */
   const frame = (now: number) => {
     const due = queue;
@@ -82,6 +83,16 @@ describe('CameraRig', () => {
     quick.frame(0);
     expect(quick.sent).toHaveLength(1);
     expect(quick.sent[0]?.eye[2]).toBeCloseTo(slow.sent.at(-1)?.eye[2] ?? NaN, 9);
+  });
+
+  it('frames the scene as it was told last, wherever the camera is then', () => {
+    const { rig } = makeRig();
+    rig.orbit(0.5, 0);
+    const turned = rig.current();
+    rig.setBounds({ low: [3, -1, -1], high: [5, 1, 1] });
+    expect(rig.current()).toEqual(turned);
+    rig.frame();
+    expect(rig.current()?.target).toEqual([4, 0, 0]);
   });
 
   it('goes back to the first view of the scene', () => {

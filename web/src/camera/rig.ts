@@ -36,12 +36,16 @@ export class CameraRig {
   constructor(private readonly hooks: RigHooks) {}
 
   /** Takes over the server's truth, at connection or when somebody else moved the camera. */
-  adopt(pose: Pose, box: Box): void {
+  adopt(pose: Pose): void {
     this.travel = null;
     this.pose = pose;
     this.sent = pose;
-    this.box = box;
     this.home ??= pose;
+  }
+
+  /** Where all of the scene is; edits move it, whoever moves the camera. */
+  setBounds(box: Box): void {
+    this.box = box;
   }
 
   /** A new scene: its first view is the one that `reset` goes back to. */
