@@ -230,7 +230,7 @@ function onPicked(picked: Picked): void {
     ledger.say('Picked: nothing but the environment');
     return;
   }
-  rig.setPivot(picked.posW ?? null);
+  rig.setPivot(picked.posW ? { point: picked.posW, node: picked.node } : null);
   const material = picked.material === undefined ? {} : { material: picked.material };
   model.select({ kind: 'node', node: picked.node, ...material });
   const node = nameOf(model.scene?.nodes[picked.node]?.name, 'Node', picked.node);

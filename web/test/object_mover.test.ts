@@ -61,11 +61,23 @@ describe('ObjectMover', () => {
   it('moves what is selected with the pointer, and the point that the camera turns about', () => {
     const { model, rig, edits, mover } = makeMover();
     model.select({ kind: 'node', node: 0 });
-    rig.setPivot([0.2, 0, 1]);
+    rig.setPivot({ point: [0.2, 0, 1], node: 0 });
     mover.move(0.5, 0.25);
     mover.move(0.5, 0);
     expect(edits.at(-1)).toEqual({ target: 'node', node: 0, translation: [4, 2.75, 3] });
     expect(rig.pivot()).toEqual([3.2, 0.75, 1]);
+  });
+
+  it('moves what was chosen in the list with its origin, and leaves what the camera turns about', () => {
+    const { model, rig, edits, mover } = makeMover();
+    // From 5 m the picture is 5 m high at the target, 2 m at the node's origin and 1 m at the picked point.
+    rig.adopt({ ...pose, eye: [0, 0, 5], lens: { ...pose.lens, perspective: true, yfov: 2 * Math.atan(0.5) } });
+    model.select({ kind: 'node', node: 0 });
+    rig.setPivot({ point: [0, 0, 4], node: 2 });
+    mover.move(0, 0.5);
+    const [edit] = edits as (Edit & { target: 'node' })[];
+    expect(edit?.translation?.[1]).toBeCloseTo(2 + 0.5 * 2, 12);
+    expect(rig.pivot()).toEqual([0, 0, 4]);
   });
 
   it('says why nothing moved', () => {

@@ -61,14 +61,14 @@ describe('CameraRig', () => {
 
   it('turns about the picked point', () => {
     const { rig } = makeRig();
-    rig.setPivot([0, 0, 4]);
+    rig.setPivot({ point: [0, 0, 4], node: 0 });
     rig.orbit(Math.PI / 2, 0);
     expect(rig.current()?.eye[0]).toBeCloseTo(1, 9);
   });
 
   it('turns about the target of another view that was chosen', () => {
     const { rig } = makeRig();
-    rig.setPivot([0, 0, 4]);
+    rig.setPivot({ point: [0, 0, 4], node: 0 });
     rig.lookFrom({ ...pose, eye: [3, 0, 0], target: [1, 0, 0] });
     expect(rig.pivot()).toEqual([1, 0, 0]);
   });

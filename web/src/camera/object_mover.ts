@@ -14,7 +14,10 @@ export function movedTranslation(scene: SceneMessage, node: number, step: Vec3):
   return inParent && add(item.translation, inParent);
 }
 
-/** Moves the selected object parallel to the picture, so that what was picked of it stays under the pointer. */
+/**
+ * Moves the selected object parallel to the picture, so that what was picked of it stays under the pointer. Where
+ * nothing was, its origin goes with the pointer, and what the camera turns about stays.
+ */
 export class ObjectMover {
   constructor(
     private readonly model: Model,
@@ -34,13 +37,14 @@ export class ObjectMover {
     }
     const { node } = selection;
     const name = nameOf(scene.nodes[node]?.name, 'Node', node);
-    const step = stepInPicture(pose, this.rig.pivot(), right, up);
+    const held = this.rig.pickedOf(node);
+    const step = stepInPicture(pose, held ?? worldPlacement(scene, node).origin, right, up);
     const translation = scene.nodes[node]?.matrix ? null : movedTranslation(scene, node, step);
     if (!translation) {
       this.refuse(`Nothing moved: ${name} is placed by a matrix, or in a flat space`);
       return;
     }
     this.edit(`${name}, translation`, { target: 'node', node, translation: [...translation] });
-    this.rig.setPivot(add(this.rig.pivot(), step));
+    if (held) this.rig.setPivot({ point: add(held, step), node });
   }
 }

@@ -5,6 +5,12 @@ import { blend, dolly, forwardOf, frameBox, lookAtPoint, orbit, pan, type Box, t
 const kMinSendMs = 1000 / 60 - 1;
 const kTravelMs = 280;
 
+/** A point of an object that was picked. */
+export interface PickedPoint {
+  point: Vec3;
+  node: number;
+}
+
 export interface RigHooks {
   /** Called at most once per animation frame and 60 times a second, only with a pose that differs from the last one. */
   send(pose: Pose): void;
@@ -27,7 +33,7 @@ export class CameraRig {
   private home: Pose | null = null;
   private sent: Pose | null = null;
   private box: Box = { low: [-1, -1, -1], high: [1, 1, 1] };
-  private picked: Vec3 | null = null;
+  private picked: PickedPoint | null = null;
   private travel: { from: Pose; to: Pose; startMs: number | null } | null = null;
   private lastSendMs = -Infinity;
   private scheduled = false;
@@ -64,11 +70,17 @@ export class CameraRig {
   }
 
   pivot(): Vec3 {
-    return this.picked ?? this.pose?.target ?? [0, 0, 0];
+    return this.picked?.point ?? this.pose?.target ?? [0, 0, 0];
   }
 
-  setPivot(point: Vec3 | null): void {
-    this.picked = point;
+  /** What the camera turns about from now on; null: what it looks at. */
+  setPivot(picked: PickedPoint | null): void {
+    this.picked = picked;
+  }
+
+  /** The picked point, where it is one of `node`. */
+  pickedOf(node: number): Vec3 | null {
+    return this.picked?.node === node ? this.picked.point : null;
   }
 
   /** Angles in radians. */
@@ -96,7 +108,7 @@ export class CameraRig {
 
   /** The picked point in the middle of the picture. */
   centerPicked(): void {
-    if (this.pose && this.picked) this.goTo(lookAtPoint(this.pose, this.picked));
+    if (this.pose && this.picked) this.goTo(lookAtPoint(this.pose, this.picked.point));
   }
 
   reset(): void {
