@@ -85,7 +85,8 @@ describe('dolly', () => {
 
   it.each([true, false])('never goes the other way where it is beyond its limits; perspective: %s', (perspective) => {
     const sizeOf = (p: Pose) => (perspective ? distance(p.eye, p.target) : p.lens.ymag);
-    const at = (size: number): Pose => ({ ...pose, eye: [0, 0, size], lens: { ...pose.lens, perspective, ymag: size } });
+    const lens = (size: number) => ({ ...pose.lens, perspective, ymag: size });
+    const at = (size: number): Pose => ({ ...pose, eye: [0, 0, size], lens: lens(size) });
     const zoomed = (size: number, factor: number) => sizeOf(dolly(at(size), pose.target, factor, 1));
     expect([zoomed(1e-5, 0.9), zoomed(1e3, 1.1)]).toEqual([1e-5, 1e3]);
     expect(zoomed(1e-5, 2)).toBeCloseTo(2e-5, 12);

@@ -50,8 +50,8 @@ export function rightOf(pose: Pose): Vec3 {
 }
 
 /**
- * The pose with the world's up, about which an orbit leaves the horizon level, where that makes the same picture. A rolled
- * camera and one that looks straight up or down keep their own.
+ * The pose with the world's up, about which an orbit leaves the horizon level, where that makes the same picture. A
+ * rolled camera and one that looks straight up or down keep their own.
  */
 export function levelled(pose: Pose): Pose {
   const across = cross(forwardOf(pose), kWorldUp);

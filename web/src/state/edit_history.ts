@@ -72,7 +72,7 @@ export class EditHistory {
     return this.undone.at(-1)?.label ?? null;
   }
 
-  /** Told of each scene. Steps hold absolute values: those of a lost connection are good as long as all things are there. */
+  /** Told of each scene. Steps hold absolute values: they outlast a connection as long as all things are there. */
   onScene({ cause, name, materials, lights, nodes }: SceneMessage): void {
     const things = [name, materials.length, lights.length, nodes.length].join();
     if (cause === 'loaded' || things !== this.things) this.clear();
