@@ -9,6 +9,7 @@ import { Model, withEdit } from '../src/state/model';
 
 const upright = [0, 0, 0, 1];
 const quarterTurn = [0, 0, Math.SQRT1_2, Math.SQRT1_2];
+const kShear = [1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0];
 const node = (fields: object) => ({ name: '', translation: [0, 0, 0], rotation: upright, scale: [1, 1, 1], ...fields });
 
 const makeScene = () =>
@@ -17,7 +18,7 @@ const makeScene = () =>
     nodes: [
       node({ name: 'Turned', translation: [1, 2, 3], rotation: quarterTurn, scale: [2, 3, 4] }),
       node({ name: 'Inside', parent: 0, translation: [0.5, 0, 0] }),
-      node({ name: 'Matrix', matrix: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] }),
+      node({ name: 'Matrix', parent: 0, matrix: [...kShear, 4, 5, 6, 1] }),
       node({ name: 'Flat', scale: [1, 0, 1] }),
       node({ name: 'In the flat one', parent: 3 }),
     ],
@@ -32,7 +33,7 @@ const pose: Pose = {
 };
 
 describe('movedTranslation', () => {
-  it.each([0, 1])('moves node %i by the step in the world, whatever its parent does', (index) => {
+  it.each([0, 1, 2])('moves node %i by the step in the world, whatever its parent does', (index) => {
     const scene = makeScene();
     const step: Vec3 = [0.3, -0.2, 0.7];
     const translation = movedTranslation(scene, index, step);
@@ -80,15 +81,24 @@ describe('ObjectMover', () => {
     expect(rig.pivot()).toEqual([0, 0, 4]);
   });
 
+  it('moves what a matrix places, and leaves the axes of the matrix', () => {
+    const { model, edits, mover } = makeMover();
+    model.select({ kind: 'node', node: 2 });
+    mover.move(0, 0.5);
+    // A quarter turn and a scale by 2 of the parent take its x to twice the world's y.
+    expect(edits).toEqual([{ target: 'node', node: 2, translation: [expect.closeTo(4.75), expect.closeTo(5), 6] }]);
+    expect(model.scene?.nodes[2]?.matrix?.slice(0, 12)).toEqual(kShear);
+  });
+
   it('says why nothing moved', () => {
     const { model, edits, refusals, mover } = makeMover();
     mover.move(0.1, 0);
-    model.select({ kind: 'node', node: 2 });
+    model.select({ kind: 'node', node: 4 });
     mover.move(0.1, 0);
     expect(edits).toEqual([]);
     expect(refusals).toEqual([
       'Nothing moved: pick an object first',
-      'Nothing moved: Matrix is placed by a matrix, or in a flat space',
+      'Nothing moved: In the flat one is in a flat space',
     ]);
   });
 });

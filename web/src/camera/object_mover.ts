@@ -1,4 +1,4 @@
-import { solveLinear, worldPlacement } from '../math/placement';
+import { localPlacement, solveLinear, worldPlacement } from '../math/placement';
 import { add, type Vec3 } from '../math/vec3';
 import { nameOf } from '../panels/names';
 import type { Edit, SceneMessage } from '../protocol/messages.gen';
@@ -11,7 +11,7 @@ export function movedTranslation(scene: SceneMessage, node: number, step: Vec3):
   const item = scene.nodes[node];
   if (!item) return null;
   const inParent = item.parent === undefined ? step : solveLinear(worldPlacement(scene, item.parent), step);
-  return inParent && add(item.translation, inParent);
+  return inParent && add(localPlacement(item).origin, inParent);
 }
 
 /**
@@ -39,9 +39,9 @@ export class ObjectMover {
     const name = nameOf(scene.nodes[node]?.name, 'Node', node);
     const held = this.rig.pickedOf(node);
     const step = stepInPicture(pose, held ?? worldPlacement(scene, node).origin, right, up);
-    const translation = scene.nodes[node]?.matrix ? null : movedTranslation(scene, node, step);
+    const translation = movedTranslation(scene, node, step);
     if (!translation) {
-      this.refuse(`Nothing moved: ${name} is placed by a matrix, or in a flat space`);
+      this.refuse(`Nothing moved: ${name} is in a flat space`);
       return;
     }
     this.edit(`${name}, translation`, { target: 'node', node, translation: [...translation] });

@@ -104,7 +104,7 @@ export interface LightEdit {
   outerConeAngle?: number;  /** dark outside [rad] */
 }
 
-/** A node's transform against its parent; absent parts keep their value. */
+/** A node's transform against its parent; absent parts keep their value. Of a node that a matrix places, a translation replaces the fourth column and keeps the others; a rotation or a scale puts the three parts in the matrix's place. */
 export interface NodeEdit {
   node: number;  /** index */
   translation?: [number, number, number];  /** against the parent [m] */
