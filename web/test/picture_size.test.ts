@@ -2,28 +2,10 @@ import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { PictureSize } from '../src/panels/picture_size';
 import type { Edit, SceneMessage } from '../src/protocol/messages.gen';
 import { Model } from '../src/state/model';
+import { stubDocument } from './fake_dom';
 
 // Longer than a resized window takes to settle.
 const kRestMs = 1000;
-
-/** As much of an element as the list of sizes needs. */
-class FakeElement extends EventTarget {
-  value = '';
-  private children: unknown[] = [];
-  constructor(private readonly tag: string) {
-    super();
-  }
-  setAttribute(): void {}
-  append(...children: unknown[]): void {
-    this.children.push(...children);
-  }
-  replaceChildren(...children: unknown[]): void {
-    this.children = children;
-  }
-  querySelector(tag: string): FakeElement | undefined {
-    return this.children.find((child): child is FakeElement => child instanceof FakeElement && child.tag === tag);
-  }
-}
 
 const sceneOf = (cause: SceneMessage['cause'], width: number, height: number) =>
   ({ cause, name: 'a.glb', materials: [], lights: [], nodes: [], width, height }) as unknown as SceneMessage;
@@ -60,7 +42,7 @@ function makePage() {
 describe('PictureSize', () => {
   beforeEach(() => {
     vi.useFakeTimers();
-    vi.stubGlobal('document', { createElement: (tag: string) => new FakeElement(tag) });
+    stubDocument();
   });
   afterEach(() => {
     vi.useRealTimers();

@@ -163,6 +163,10 @@ export function numberField(options: NumberOptions): Field<number> {
     slider.value = String(scale.positionOf(value));
     describeSlider(value);
   };
+  const show = (value: number) => {
+    entry.set(value);
+    moveSlider(value);
+  };
   slider.addEventListener('input', () => {
     const value = scale.valueAt(Number(slider.value));
     entry.set(value);
@@ -175,8 +179,7 @@ export function numberField(options: NumberOptions): Field<number> {
       if (!direction || event.altKey || event.ctrlKey || event.metaKey) return;
       event.preventDefault();
       const value = scale.nextInteger(entry.shown(), direction);
-      entry.set(value);
-      moveSlider(value);
+      show(value);
       options.onInput(value);
     });
   entry.input.addEventListener('change', () => {
@@ -184,23 +187,23 @@ export function numberField(options: NumberOptions): Field<number> {
     if (value !== null) moveSlider(value);
   });
   let dragging = false;
-  slider.addEventListener('pointerdown', () => {
-    dragging = true;
-  });
-  slider.addEventListener('pointerup', () => {
+  let withheld: number | null = null; // must not move the slider under the hand, and is shown once that lets go
+  const release = () => {
     dragging = false;
+    if (withheld !== null) show(withheld);
+    withheld = null;
+  };
+  slider.addEventListener('pointerdown', (event) => {
+    dragging = event.button === 0;
   });
-  slider.addEventListener('pointercancel', () => {
-    dragging = false;
-  });
+  for (const end of ['pointerup', 'pointercancel', 'lostpointercapture']) slider.addEventListener(end, release);
   row.append(slider);
   row.classList.add('with-slider');
   return {
     element: row,
     set(value) {
-      if (dragging) return;
-      entry.set(value);
-      moveSlider(value);
+      if (dragging) withheld = value;
+      else show(value);
     },
   };
 }
