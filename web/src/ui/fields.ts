@@ -34,13 +34,24 @@ export function labelText(label: string, unit?: string | undefined): HTMLElement
   return h('span', { class: 'name' }, label, shown);
 }
 
-/** Reads a typed number; null when it is not one or lies outside the range. */
+// Whether these commas part decimals or thousands nobody can tell; "0,125" and "1,5" can only be decimals.
+const kAmbiguous = /^[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d+)?$/;
+
+/** Reads a typed number; null when it is not one, may be one of two, or lies outside the range. */
 function parseTyped(text: string, options: NumberOptions): number | null {
-  const value = Number(text.trim().replace(',', '.'));
-  if (text.trim() === '' || !Number.isFinite(value)) return null;
+  const typed = text.trim();
+  const value = Number(typed.replace(',', '.'));
+  if (typed === '' || kAmbiguous.test(typed) || !Number.isFinite(value)) return null;
   if (options.integer && !Number.isInteger(value)) return null;
   if (value < (options.minimum ?? -Infinity) || value > (options.maximum ?? Infinity)) return null;
   return value;
+}
+
+/** What is wrong with a typed text that is no number here. */
+function faultOf(text: string, options: NumberOptions): string {
+  if (kAmbiguous.test(text.trim())) return 'Ambiguous: write a point before decimals, and nothing between thousands';
+  const kind = options.integer ? 'A whole number' : 'A number';
+  return `${kind} from ${options.minimum ?? '−∞'} to ${options.maximum ?? '∞'}`;
 }
 
 interface NumberInput {
@@ -63,17 +74,16 @@ function numberInput(options: NumberOptions, label: string): NumberInput {
     input.value = formatNumber(value, 5);
     input.dataset['dirty'] = 'false';
     input.removeAttribute('aria-invalid');
+    input.title = '';
   };
   const commit = () => {
     if (input.dataset['dirty'] !== 'true') return;
     const value = parseTyped(input.value, options);
     if (value === null) {
       input.setAttribute('aria-invalid', 'true');
-      const kind = options.integer ? 'A whole number' : 'A number';
-      input.title = `${kind} from ${options.minimum ?? '−∞'} to ${options.maximum ?? '∞'}`;
+      input.title = faultOf(input.value, options);
       return;
     }
-    input.title = '';
     show(value);
     options.onInput(value);
   };
