@@ -260,7 +260,7 @@ function onFrame(frame: FrameReport): void {
   statistics.onFrame(frame);
   if (frame.dropped) return;
   const { header } = frame;
-  stage.setPictureSize(header.fullWidth, header.fullHeight);
+  stage.onPicture(header.fullWidth, header.fullHeight);
   rig.aspect = stage.aspect();
   bar.showFrame(frame);
   statistics.onLatencies(desk.onFrame(frame));

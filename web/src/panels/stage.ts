@@ -35,6 +35,7 @@ export function pixelAt(
 export class Stage {
   private size = { width: 16, height: 16 };
   private hasPicture = false;
+  private connected = false;
   private retryTimer: ReturnType<typeof setInterval> | undefined;
 
   constructor(
@@ -46,10 +47,12 @@ export class Stage {
     model.on('connection', (state) => this.showConnection(state));
   }
 
-  setPictureSize(width: number, height: number): void {
+  /** A picture of this size was shown. */
+  onPicture(width: number, height: number): void {
     this.hasPicture = true;
     this.element.classList.add('has-picture');
     this.size = { width, height };
+    this.markStale(!this.connected);
   }
 
   aspect(): number {
@@ -81,13 +84,17 @@ export class Stage {
 
   private showConnection(state: ConnectionState): void {
     clearInterval(this.retryTimer);
-    const live = state.kind === 'connected';
-    this.element.classList.toggle('stale', !live && this.hasPicture);
-    this.stale.hidden = live;
-    if (live) return;
+    this.connected = state.kind === 'connected';
+    this.markStale(true);
     const write = () => setText(this.stale, staleText(state, this.hasPicture));
     write();
     if ('retryAtMs' in state) this.retryTimer = setInterval(write, 250);
+  }
+
+  /** What is shown is of an older connection, or of none. */
+  private markStale(stale: boolean): void {
+    this.element.classList.toggle('stale', stale && this.hasPicture);
+    this.stale.hidden = !stale;
   }
 }
 
@@ -106,6 +113,6 @@ function staleText(state: ConnectionState, hasPicture: boolean): string {
     case 'paused':
       return `${what}paused while the page was hidden`;
     case 'connected':
-      return '';
+      return `${what}waiting for the first picture`;
   }
 }
