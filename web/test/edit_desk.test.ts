@@ -26,8 +26,8 @@ function makeDesk() {
   return { desk, posted, shown, outcomes, displayFrame };
 }
 
-const picture = (ackSeq: number, presentedMs: number, dropped = false) =>
-  ({ header: { ackSeq } as FrameHeader, presentedMs, dropped }) as FrameReport;
+const picture = (ackSeq: number, presentedMs: number, dropped = false, sceneRevision = 2) =>
+  ({ header: { ackSeq, sceneRevision } as FrameHeader, presentedMs, dropped }) as FrameReport;
 const roughness = (value: number) => ({ target: 'material', material: 2, roughness: value }) as const;
 const ack = (seq: number, cost: 'relight' | 'none' | 're-gather' = 'relight', superseded = false) =>
   ({ op: 'ack', seq, cost, sceneRevision: 2, viewRevision: 1, superseded }) as const;
@@ -71,6 +71,26 @@ describe('EditDesk', () => {
       'Roughness: relight …',
       'Roughness: relight, 0.18 s to first pixels',
     ]);
+  });
+
+  it('waits for an image that is read while later edits are shown', () => {
+    const { desk, posted, outcomes, displayFrame } = makeDesk();
+    desk.set('Image', { target: 'environment', image: 'sky.hdr' });
+    displayFrame(16);
+    desk.onSent(posted[0]!.ticket, 7);
+    expect(desk.onFrame(picture(8, 1100, false, 1))).toEqual([]); // of an edit that was sent after it
+    expect(outcomes).toEqual([]);
+    desk.onAck(ack(7));
+    expect(desk.onFrame(picture(8, 1200, false, 1))).toEqual([]); // was on its way when the image was taken up
+    expect(desk.onFrame(picture(8, 1300, false, 2))).toEqual([300]);
+  });
+
+  it('does not wait for an image that is taken away', () => {
+    const { desk, posted, displayFrame } = makeDesk();
+    desk.set('Image', { target: 'environment', image: '' });
+    displayFrame(16);
+    desk.onSent(posted[0]!.ticket, 7);
+    expect(desk.onFrame(picture(7, 1100, false, 1))).toEqual([100]);
   });
 
   it('asks for no picture where nothing changed', () => {

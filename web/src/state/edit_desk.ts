@@ -1,5 +1,5 @@
 import type { FrameReport, Outgoing } from '../channel';
-import type { Ack, CostClass, Edit, ErrorMessage, SceneMessage, View } from '../protocol/messages.gen';
+import type { Ack, CostClass, Edit, ErrorMessage, FrameHeader, SceneMessage, View } from '../protocol/messages.gen';
 import { withEdit } from './model';
 
 /** What became of one edit of this person. */
@@ -34,6 +34,17 @@ interface Pending {
   draft: Draft;
   seq: number | null;
   cost: CostClass | null;
+  /** That holds the edit; 0 until its acknowledgement tells. */
+  sceneRevision: number;
+}
+
+/** True when the server reads a file before it applies the edit; edits that were sent after it may come first. */
+const namesImage = (edit: Edit): boolean => edit.target === 'environment' && !!edit.image;
+
+/** True when a picture holds the edit. */
+function isShown({ draft, seq, cost, sceneRevision }: Pending, picture: FrameHeader): boolean {
+  if (seq === null || seq > picture.ackSeq) return false;
+  return !namesImage(draft.edit) || (cost !== null && sceneRevision <= picture.sceneRevision);
 }
 
 /** The same for edits of the same fields of the same thing; `label` tells the technique's parameters apart. */
@@ -111,6 +122,7 @@ export class EditDesk {
     if (!found) return;
     const [ticket, entry] = found;
     entry.cost = ack.cost;
+    entry.sceneRevision = ack.sceneRevision;
     if (ack.cost === 'none' || ack.superseded) this.finish(ticket, { kind: 'applied', cost: ack.cost });
     else
       this.hooks.onOutcome({ label: entry.draft.label, camera: entry.draft.camera, kind: 'applied', cost: ack.cost });
@@ -130,7 +142,7 @@ export class EditDesk {
     if (frame.dropped) return [];
     const latencies: number[] = [];
     for (const [ticket, entry] of this.pending) {
-      if (entry.seq === null || entry.seq > frame.header.ackSeq) continue;
+      if (!isShown(entry, frame.header)) continue;
       const latencyMs = frame.presentedMs - entry.draft.inputMs;
       latencies.push(latencyMs);
       this.finish(ticket, { kind: 'applied', latencyMs, ...(entry.cost ? { cost: entry.cost } : {}) });
@@ -166,7 +178,7 @@ export class EditDesk {
 
   private send(draft: Draft): void {
     const ticket = this.nextTicket++;
-    this.pending.set(ticket, { draft, seq: null, cost: null });
+    this.pending.set(ticket, { draft, seq: null, cost: null, sceneRevision: 0 });
     this.hooks.post(ticket, draft.message);
   }
 
