@@ -5,7 +5,7 @@ import { encodeServer, type FrameHeader } from '../src/protocol/messages.gen';
 import { Connection } from '../src/worker/connection';
 
 const kGolden = new URL('../../protocol/golden/', import.meta.url);
-const helloOfServer = readFileSync(new URL('server_hello.jsonl', kGolden), 'utf8').split('\n')[0] ?? '';
+const firstOf = (name: string) => readFileSync(new URL(`${name}.jsonl`, kGolden), 'utf8').split('\n')[0] ?? '';
 
 /** A socket that says only what a test lets it say. */
 class FakeSocket {
@@ -21,6 +21,10 @@ class FakeSocket {
   close(): void {}
 }
 
+/** A description of a scene of which this large a picture is made. */
+const sceneOf = (width: number, height: number) =>
+  JSON.stringify({ ...(JSON.parse(firstOf('server_scene')) as object), width, height });
+
 function connect() {
   const states: ConnectionState['kind'][] = [];
   const connection = new Connection('ws://x/ws', null, {
@@ -34,7 +38,7 @@ function connect() {
   connection.open();
   const hear = (data: string | ArrayBuffer) => FakeSocket.newest.onmessage?.({ data });
   FakeSocket.newest.onopen?.();
-  hear(helloOfServer);
+  hear(firstOf('server_hello'));
   return { states, hear };
 }
 
@@ -49,9 +53,21 @@ describe('Connection', () => {
   });
 
   it('gives up a server that falls silent', () => {
-    const { states } = connect();
+    const { states, hear } = connect();
     expect(states).toEqual(['connecting', 'connected']);
+    hear(sceneOf(1, 1));
     vi.advanceTimersByTime(15_000);
+    expect(states.at(-1)).toBe('connected');
+    vi.advanceTimersByTime(5_000);
+    expect(states.at(-1)).toBe('reconnecting');
+  });
+
+  it('has more time for the first description, and for a large picture after it', () => {
+    const { states, hear } = connect();
+    vi.advanceTimersByTime(70_000);
+    expect(states.at(-1)).toBe('connected');
+    hear(sceneOf(2048, 2048));
+    vi.advanceTimersByTime(110_000);
     expect(states.at(-1)).toBe('connected');
     vi.advanceTimersByTime(5_000);
     expect(states.at(-1)).toBe('reconnecting');
@@ -59,6 +75,7 @@ describe('Connection', () => {
 
   it('waits for a file that was told of, and no longer once it is here', () => {
     const { states, hear } = connect();
+    hear(sceneOf(1, 1));
     hear(encodeServer({ op: 'saved', seq: 2, bytes: 65_536 * 60, encoding: 'exr' }));
     vi.advanceTimersByTime(70_000);
     expect(states.at(-1)).toBe('connected');

@@ -27,22 +27,48 @@ const frame = (fields: Partial<FrameHeader>) =>
     ...fields,
   }) as FrameHeader;
 
+/** At rest: the final picture is here. */
+function restingPatience() {
+  const patience = new Patience();
+  patience.onMessage(scene);
+  patience.onFrame(frame({ flags: kFinal }));
+  return patience;
+}
+
 describe('Patience', () => {
-  it('waits for a saved file as long as a slow link needs, whatever pictures come before it', () => {
+  it('waits for the first description, which may be long', () => {
     const patience = new Patience();
+    expect(patience.limitMs()).toBe(kUsualMs + 60_000);
+    patience.onMessage(status('converging'));
+    expect(patience.limitMs()).toBe(kUsualMs + 60_000);
+  });
+
+  it('waits for a saved file as long as a slow link needs, whatever pictures come before it', () => {
+    const patience = restingPatience();
     expect(patience.limitMs()).toBe(kUsualMs);
     patience.onMessage({ op: 'saved', seq: 4, bytes: mebibytes(4), encoding: 'exr' });
-    patience.onFrame(frame({}));
+    patience.onFrame(frame({ flags: kFinal }));
     expect(patience.limitMs()).toBe(kUsualMs + 64_000);
     patience.onFrame(frame({ kind: 'file' }));
     expect(patience.limitMs()).toBe(kUsualMs);
   });
 
-  it('waits for the lossless picture of a converged film, and no longer', () => {
+  it('waits for pictures of full quality as long as the final one is not here', () => {
     const patience = new Patience();
     patience.onMessage(scene);
     patience.onMessage(status('converging'));
+    expect(patience.limitMs()).toBe(kUsualMs + 12_000);
+    patience.onFrame(frame({ fullWidth: 2048 }));
+    expect(patience.limitMs()).toBe(kUsualMs + 24_000);
+    patience.onFrame(frame({ flags: kFinal }));
     expect(patience.limitMs()).toBe(kUsualMs);
+    patience.onMessage(ack(4));
+    expect(patience.limitMs()).toBe(kUsualMs + 12_000);
+  });
+
+  it('waits for the lossless picture of a converged film, and no longer', () => {
+    const patience = new Patience();
+    patience.onMessage(scene);
     patience.onMessage(status('converged'));
     expect(patience.limitMs()).toBe(kUsualMs + 24_000);
     patience.onFrame(frame({ flags: kFinal }));
@@ -51,10 +77,8 @@ describe('Patience', () => {
   });
 
   it('waits again after an edit that leaves the film converged', () => {
-    const patience = new Patience();
-    patience.onMessage(scene);
+    const patience = restingPatience();
     patience.onMessage(status('converged'));
-    patience.onFrame(frame({ flags: kFinal }));
     patience.onMessage(ack(4));
     expect(patience.limitMs()).toBe(kUsualMs + 24_000);
     patience.onFrame(frame({ flags: kFinal, sceneRevision: 4 }));

@@ -6,12 +6,16 @@ import { isOlder, type Revisions } from './decode_queue';
 const kSilentMs = 15_000;
 // The slowest link that is borne with.
 const kSlowBytesPerMs = 65_536 / 1000;
-// A lossless picture is hardly ever longer than its pixels.
-const kPixelBytes = 3;
+// A picture is hardly ever longer than this for each of its pixels: a lossless one, and one of full quality before it.
+const kLosslessPixelBytes = 3;
+const kPixelBytes = 1.5;
+// What a description is for whose length nobody knows before it is here.
+const kDescriptionMs = 60_000;
 
 /** How long the server may be silent: behind a large message nothing else arrives until its last byte is here. */
 export class Patience {
   private fileBytes = 0;
+  private described = false;
   private converged = false;
   private pixels = 0;
   private told: Revisions = { sceneRevision: 0, viewRevision: 0 };
@@ -26,6 +30,7 @@ export class Patience {
         this.converged = message.phase === 'converged';
         break;
       case 'scene':
+        this.described = true;
         this.pixels = message.width * message.height;
         this.hearOf(message);
         break;
@@ -45,16 +50,17 @@ export class Patience {
   }
 
   limitMs(): number {
-    const pictureBytes = this.awaitsLossless() ? this.pixels * kPixelBytes : 0;
-    return kSilentMs + (this.fileBytes + pictureBytes) / kSlowBytesPerMs;
+    const descriptionMs = this.described ? 0 : kDescriptionMs;
+    return kSilentMs + descriptionMs + (this.fileBytes + this.pictureBytes()) / kSlowBytesPerMs;
   }
 
   private hearOf({ sceneRevision, viewRevision }: Revisions): void {
     this.told = { sceneRevision, viewRevision };
   }
 
-  /** Of a converged film a lossless picture follows, unless it is here and nothing changed since. */
-  private awaitsLossless(): boolean {
-    return this.converged && !(this.shown && isFinal(this.shown) && !isOlder(this.shown, this.told));
+  /** Of the picture that may be on its way: none follows the final one until something changes. */
+  private pictureBytes(): number {
+    if (this.shown && isFinal(this.shown) && !isOlder(this.shown, this.told)) return 0;
+    return this.pixels * (this.converged ? kLosslessPixelBytes : kPixelBytes);
   }
 }
