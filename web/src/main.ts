@@ -200,6 +200,7 @@ function onMessage(message: ServerMessage): void {
       break;
     case 'status':
       model.setStatus(message);
+      statistics.onStatus(message, nowMs());
       break;
     case 'ack':
       remember(hook.acks, message);

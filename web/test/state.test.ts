@@ -2,7 +2,7 @@ import { describe, expect, it, vi } from 'vitest';
 import type { FrameReport } from '../src/channel';
 import { shareOfStage } from '../src/panels/picture_size';
 import { fitPicture, pixelAt } from '../src/panels/stage';
-import type { FrameHeader, SceneMessage, View } from '../src/protocol/messages.gen';
+import type { FrameHeader, SceneMessage, Status, View } from '../src/protocol/messages.gen';
 import { Model, withEdit } from '../src/state/model';
 import { Statistics, thin } from '../src/state/statistics';
 import { Announcer } from '../src/ui/announcer';
@@ -97,9 +97,19 @@ describe('Model', () => {
   });
 });
 
-const picture = (presentedMs: number, steps: number, estimatedError: number, dropped = false) =>
+const picture = (presentedMs: number, steps: number, estimatedError: number, dropped = false, header = {}) =>
   ({
-    header: { steps, meanSamples: steps, estimatedError, errorLow: 0, errorHigh: 1, msSinceEdit: 50 } as FrameHeader,
+    header: {
+      steps,
+      meanSamples: steps,
+      estimatedError,
+      errorLow: 0,
+      errorHigh: 1,
+      msSinceEdit: 50,
+      sceneRevision: 1,
+      viewRevision: 1,
+      ...header,
+    } as FrameHeader,
     dropped,
     presentedMs,
     receivedMs: presentedMs,
@@ -117,6 +127,38 @@ describe('Statistics', () => {
     expect(s.errorPoints[0]?.seconds).toBeCloseTo(0.15, 9);
     s.onFrame(picture(2000, 1, 0.9));
     expect(s.errorPoints).toEqual([{ seconds: 0.05, error: 0.9, low: 0, high: 1 }]);
+  });
+  it.each([{ sceneRevision: 2 }, { viewRevision: 2 }])('begins the curve anew with %j', (revision) => {
+    const s = new Statistics();
+    s.onFrame(picture(1000, 3, 0.5));
+    s.onFrame(picture(5000, 3, 0.4, false, revision));
+    expect(s.errorPoints.map((p) => p.seconds)).toEqual([0.05]);
+  });
+  it('begins the curve anew with each restart of which no pass was finished', () => {
+    const s = new Statistics();
+    s.onFrame(picture(1000, 1, Infinity));
+    s.onFrame(picture(5000, 1, Infinity)); // a parameter was changed
+    s.onFrame(picture(5200, 2, 0.5, false, { msSinceEdit: 250 }));
+    expect(s.errorPoints.map((p) => p.seconds)).toEqual([0.25]);
+  });
+  it('counts from the restart that was before joining, whatever was edited since', () => {
+    const s = new Statistics();
+    s.onConnected();
+    s.onStatus({ secondsSinceRestart: 40 } as Status, 1000);
+    s.onFrame(picture(1500, 90, 0.5));
+    s.onStatus({ secondsSinceRestart: 41 } as Status, 2500);
+    s.onFrame(picture(2500, 99, 0.4));
+    expect(s.errorPoints.map((p) => p.seconds)).toEqual([40.5, 41.5]);
+  });
+  it('counts the first pass of a server on which nobody edited anything', () => {
+    const s = new Statistics();
+    s.onConnected();
+    s.onStatus({ secondsSinceRestart: 0 } as Status, 1000);
+    const untouched = { msSinceEdit: 0 };
+    s.onFrame(picture(1500, 0, Infinity, false, untouched));
+    s.onFrame(picture(4000, 1, Infinity, false, untouched));
+    s.onFrame(picture(5000, 2, 0.5, false, untouched));
+    expect(s.errorPoints.map((p) => p.seconds)).toEqual([4]);
   });
   it('counts rates over two seconds, dropped frames apart', () => {
     const s = new Statistics();

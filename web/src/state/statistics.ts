@@ -1,16 +1,22 @@
 import type { FrameReport } from '../channel';
-import type { FrameHeader } from '../protocol/messages.gen';
+import type { FrameHeader, Status } from '../protocol/messages.gen';
 import type { ErrorPoint } from '../ui/plot';
 
 const kWindowMs = 2000;
 const kMaxPoints = 600;
 const kMaxLatencies = 120;
+// A load counts as an edit, and sampling begins only when it is done.
+const kLongestSinceEditMs = 10_000;
 
 interface Sample {
   atMs: number;
   bytes: number;
   shown: boolean;
 }
+
+/** When the newest edit that a picture shows was made, which restarted the sampling. */
+const editedMs = ({ presentedMs, header }: FrameReport): number =>
+  presentedMs - Math.min(kLongestSinceEditMs, Math.max(0, header.msSinceEdit));
 
 /** Figures gathered from presented frames: rates over two seconds, latencies, and the error since the restart. */
 export class Statistics {
@@ -21,7 +27,7 @@ export class Statistics {
   errorPoints: ErrorPoint[] = [];
   private samples: Sample[] = [];
   private latencies: number[] = [];
-  private restartMs = 0;
+  private restartMs: number | null = null; // when sampling began
 
   onFrame(frame: FrameReport): void {
     this.bytes += frame.bytes;
@@ -32,9 +38,17 @@ export class Statistics {
       return;
     }
     this.presented++;
-    if (this.isRestart(frame.header)) this.beginSeries(frame);
-    this.addErrorPoint(frame);
+    if (this.restartMs === null || this.isRestart(frame.header)) {
+      this.restartMs = editedMs(frame);
+      this.errorPoints = [];
+    }
+    this.addErrorPoint(frame, this.restartMs);
     this.last = frame;
+  }
+
+  /** Who joins sees pictures of a restart that was long before, maybe with edits since that restarted nothing. */
+  onStatus({ secondsSinceRestart }: Status, atMs: number): void {
+    if (!this.last) this.restartMs = atMs - secondsSinceRestart * 1000;
   }
 
   onLatencies(latencies: readonly number[]): void {
@@ -44,6 +58,7 @@ export class Statistics {
   /** A new connection: steps and revisions start anew. */
   onConnected(): void {
     this.last = null;
+    this.restartMs = null;
     this.errorPoints = [];
   }
 
@@ -70,19 +85,17 @@ export class Statistics {
   }
 
   private isRestart(header: FrameHeader): boolean {
-    if (!this.last) return true;
-    // While something is dragged no pass is ever finished; then the samples tell.
-    return header.steps < this.last.header.steps || header.meanSamples < this.last.header.meanSamples;
+    if (!this.last) return false;
+    const before = this.last.header;
+    if (header.sceneRevision !== before.sceneRevision || header.viewRevision !== before.viewRevision) return true;
+    if (header.steps < before.steps || header.meanSamples < before.meanSamples) return true;
+    // While a parameter is dragged no revision rises, and hardly a pass is finished. 0: nobody ever edited anything.
+    return header.steps < 2 && header.msSinceEdit > 0;
   }
 
-  private beginSeries(frame: FrameReport): void {
-    this.restartMs = frame.presentedMs - Math.min(10_000, Math.max(0, frame.header.msSinceEdit));
-    this.errorPoints = [];
-  }
-
-  private addErrorPoint(frame: FrameReport): void {
+  private addErrorPoint(frame: FrameReport, restartMs: number): void {
     const { estimatedError: error, errorLow: low, errorHigh: high } = frame.header;
-    const seconds = (frame.presentedMs - this.restartMs) / 1000;
+    const seconds = (frame.presentedMs - restartMs) / 1000;
     if (!Number.isFinite(error) || error <= 0 || seconds <= 0) return;
     this.errorPoints.push({ seconds, error, low, high });
     if (this.errorPoints.length > kMaxPoints) this.errorPoints = thin(this.errorPoints);
