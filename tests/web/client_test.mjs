@@ -187,6 +187,16 @@ test('Control moves what is picked, by hand and by keys, and leaves the camera',
   await settle(page, 1);
 });
 
+test('what is written under the picture is spoken as well', async () => {
+  const said = (text) => waitFor(page, (text) => document.getElementById('announcer').textContent === text, text);
+  await pick(page, 0.5, 0.02);
+  await said('Picked: nothing but the environment');
+  await page.getByLabel('Scene file under the asset root').fill('other.glb');
+  await page.getByRole('button', { name: 'Load' }).click();
+  await said('the toy holds one scene only (other.glb)');
+  assert.match(await ledger(), /the toy holds one scene only/);
+});
+
 test('the list is walked with keys and opens the same panel', async () => {
   await page.locator('[role=treeitem][data-key="light:0"]').focus();
   await page.keyboard.press('ArrowDown');

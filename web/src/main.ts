@@ -57,10 +57,7 @@ const rig = new CameraRig({
   requestFrame,
   reducedMotion: () => matchMedia('(prefers-reduced-motion: reduce)').matches,
 });
-const mover = new ObjectMover(model, rig, edit, (why) => {
-  ledger.say(why, true);
-  announcer.say(why);
-});
+const mover = new ObjectMover(model, rig, edit, (why) => tell(why, true));
 const link = new StreamLink(byId<HTMLCanvasElement>('picture'), socketUrl(), tokenOfAddress(), {
   onState,
   onMessage,
@@ -129,9 +126,15 @@ function edit(label: string, change: Edit): void {
 function travel(direction: Direction): void {
   whenConnected(() => {
     const label = history[direction]();
-    if (label === null) ledger.say(`Nothing to ${direction}`);
-    announcer.say(label === null ? `Nothing to ${direction}` : `${direction}: ${label}`);
+    if (label === null) tell(`Nothing to ${direction}`);
+    else announcer.say(`${direction}: ${label}`);
   });
+}
+
+/** Writes a line under the picture and speaks it. */
+function tell(text: string, bad = false): void {
+  ledger.say(text, bad);
+  announcer.say(text);
 }
 
 function request(message: Outgoing): void {
@@ -144,8 +147,7 @@ function whenConnected(action: () => void): void {
     action();
     return;
   }
-  ledger.say('Not sent: there is no connection to the server', true);
-  announcer.say('Not sent: there is no connection to the server');
+  tell('Not sent: there is no connection to the server', true);
   model.showAgain();
 }
 
@@ -211,13 +213,13 @@ function onMessage(message: ServerMessage): void {
       onPicked(message);
       break;
     case 'loaded':
-      ledger.say(`Loaded in ${formatNumber(message.seconds, 3)} s`);
+      tell(`Loaded in ${formatNumber(message.seconds, 3)} s`);
       break;
     case 'bye':
-      ledger.say(`The server says good-bye: ${message.reason}`, true);
+      tell(`The server says good-bye: ${message.reason}`, true);
       break;
     case 'error':
-      if (!desk.onError(message)) ledger.say(`${message.message}${message.place ? ` (${message.place})` : ''}`, true);
+      if (!desk.onError(message)) tell(`${message.message}${message.place ? ` (${message.place})` : ''}`, true);
       break;
     default:
       break;
@@ -228,7 +230,7 @@ function onPicked(picked: Picked): void {
   if (!picked.hit || picked.node === undefined) {
     rig.setPivot(null);
     model.select({ kind: 'environment' });
-    ledger.say('Picked: nothing but the environment');
+    tell('Picked: nothing but the environment');
     return;
   }
   rig.setPivot(picked.posW ? { point: picked.posW, node: picked.node } : null);
@@ -239,8 +241,7 @@ function onPicked(picked: Picked): void {
     picked.material === undefined
       ? 'the default material'
       : nameOf(model.scene?.materials[picked.material]?.name, 'Material', picked.material);
-  ledger.say(`Picked: ${node}, made of ${made}`);
-  announcer.say(`${node}, made of ${made}`);
+  tell(`Picked: ${node}, made of ${made}`);
 }
 
 function onOutcome(outcome: Outcome): void {
@@ -294,5 +295,5 @@ function download(file: Blob, extension: string): void {
 
 function onFault(text: string): void {
   remember(hook.faults, text);
-  ledger.say(text, true);
+  tell(text, true);
 }
