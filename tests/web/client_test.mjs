@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { startFakeServer } from '../../web/dev/fake_server.mjs';
 import {
+  atRest,
   drag,
   gridDifference,
   meanGrid,
@@ -189,6 +190,7 @@ test('Control moves what is picked, by hand and by keys, and leaves the camera',
 
 test('what is written under the picture is spoken as well', async () => {
   const said = (text) => waitFor(page, (text) => document.getElementById('announcer').textContent === text, text);
+  await atRest(page); // else it is told meanwhile that the picture has converged
   await pick(page, 0.5, 0.02);
   await said('Picked: nothing but the environment');
   await page.getByLabel('Scene file under the asset root').fill('other.glb');
