@@ -80,6 +80,7 @@ std::vector<HardCase> rooms() {
   smooth.scene = [] { return generatedScene("hard-roughness-0"); };
   smooth.caustics = true;
   smooth.known = {interpolatedCaustics()};
+  smooth.known[0].reason += "; the point light's mirror image, which no path finds, lights them too";
   HardCase nearly = smooth;
   nearly.name = "roughness 1e-4";
   nearly.claim = "Looks like roughness 0";
