@@ -289,7 +289,7 @@ test('another picture size arrives on the canvas', async () => {
 });
 
 test('a camera of the file moves the view', async () => {
-  await pick(page, 0.5, 0.52);
+  assert.ok((await pick(page, 0.5, 0.52)).hit);
   await page.locator('[role=treeitem][data-key="camera:0"]').click();
   await waitFor(
     page,
