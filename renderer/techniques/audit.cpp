@@ -23,6 +23,8 @@ constexpr uint32_t kLeastTileSide = 4;
 constexpr uint32_t kSets = 16;
 /// Of every pixel, to begin with.
 constexpr uint32_t kFirstSamples = 4;
+/// Pixels to begin with, where the picture has as many: few may all miss the places that make the error.
+constexpr uint32_t kLeastPixels = 512;
 /// Samples a dispatch takes of a pixel, for the reason that path_tracing.cpp gives.
 constexpr uint32_t kSamplesAtOnce = 4;
 constexpr uint32_t kLeastPiece = 64, kLargestPiece = 512;
@@ -142,6 +144,7 @@ std::vector<vk::Binding> Audit::recordBindings(const TechniqueContext& context) 
 Result<void> Audit::restart(const TechniqueContext& context) {
   m_whole = {};
   m_goal = {1, kFirstSamples};
+  while (m_goal.sets < kSets && entriesOf(m_goal) < kLeastPixels) m_goal.sets *= 2;
   m_piece = {};
   m_paths = 0;
   return gpu::runNow(context.device, [&](vk::CommandRecorder& r) { m_film->recordClear(r); });

@@ -19,11 +19,13 @@ constexpr double kSigmas = 1.96;
 constexpr double kDenominatorDoubt = 0.1;
 /// A pixel is shown this much brighter than the truth around it only by mistake, unless both halves agree with it.
 constexpr double kMostOverAround = 3.0;
-/// Squared differences under this many variances are noise.
-constexpr double kNoiseThatIsDoubted = 6.0;
-/// Of two ways to know the denominators, the share of the one that the pixel's own samples have a say in; and how far the error
-/// may be from there, in distances to what either way tells. Measured on twelve scenes.
-constexpr double kSampledShare = 1.0 / 3.0, kDenominatorsApart = 1.5;
+/// Squared differences under this many variances are noise: for the cautious, and for who believes the pixel's own mean.
+constexpr double kCautiousDoubt = 12.0, kSampledDoubt = 6.0;
+/// The variance that is expected of a pixel counts as if it were known from so many samples.
+constexpr double kSamplesOfExpectation = 16.0;
+/// Of two ways to know the denominators, the share of the one that believes the pixel's own mean; and how far the error may be
+/// from there, in distances to what either way tells. Measured on twelve scenes.
+constexpr double kSampledShare = 0.2, kDenominatorsApart = 1.5;
 
 /// One pixel: what is shown, the truth as two halves know it, and the variance of one sample.
 struct Pixel {
@@ -87,19 +89,26 @@ class Expectation {
 
   /// The square of the truth, known in two ways.
   struct Squares {
-    dvec3 expected;  ///< where a picture is wrong this is known too late: the error is told too small
-    dvec3 sampled;   ///< the pixel's own samples speak too; where they are low by chance, the error is told too large
+    dvec3 cautious;  ///< both halves must say that it is not what is expected: seen too late, the error is told too small
+    dvec3 sampled;   ///< the pixel's own mean says so; where it is low by chance, the error is told too large
   };
-  /// Own samples speak as soon as they differ by more than noise from what is expected. [Efron, Morris 1973]
   Squares squaresOf(const Pixel& p) const {
-    const Sums& around = m_around[p.tile];
-    const dvec3 rest = glm::max(around.rest / around.count, dvec3(0.0));  // variance of the truth around what is expected
-    const dvec3 expected = truthOf(p), difference = p.truth - expected;
-    const dvec3 noise = glm::max(p.variance, p.truth * p.truth * around.relativeVariance()) / p.samples;
-    const dvec3 spread = glm::max(difference * difference - kNoiseThatIsDoubted * noise, dvec3(0.0));
-    const dvec3 trust = spread / glm::max(spread + noise, dvec3(1e-300));
-    const dvec3 known = expected + trust * difference;
-    return {expected * expected + rest, known * known + (1.0 - trust) * rest};
+    const dvec3 expected = truthOf(p), rest = restAround(p), difference = p.truth - expected;
+    const dvec3 relative = m_around[p.tile].relativeVariance();
+    // Few samples may all have missed what is rare, and know nothing of it: their own variance counts for more the more there are.
+    const dvec3 below = glm::min(glm::max(p.even, p.odd) - expected, dvec3(0.0));
+    const dvec3 agreed = below + glm::max(glm::min(p.even, p.odd) - expected, dvec3(0.0));
+    const dvec3 ofExpected = expected * expected * relative;
+    const dvec3 pooled = (p.variance * p.samples + ofExpected * kSamplesOfExpectation) / (p.samples + kSamplesOfExpectation);
+    const dvec3 doubted = glm::mix(ofExpected, pooled, glm::lessThan(below, dvec3(0.0)));
+    const dvec3 own = glm::max(p.variance, p.truth * p.truth * relative);
+    return {squareOf(expected, agreed, doubted / p.samples, kCautiousDoubt, rest),
+            squareOf(expected, difference, own / p.samples, kSampledDoubt, rest)};
+  }
+  /// The same before the pixel's own samples are looked at.
+  dvec3 expectedSquare(const Pixel& p) const {
+    const dvec3 expected = truthOf(p);
+    return expected * expected + restAround(p);
   }
   /// What relMSE adds to every denominator.
   double leastSquare() const {
@@ -108,6 +117,20 @@ class Expectation {
   }
 
  private:
+  /// Variance of the truth around what is expected.
+  dvec3 restAround(const Pixel& p) const {
+    const Sums& around = m_around[p.tile];
+    return glm::max(around.rest / around.count, dvec3(0.0));
+  }
+
+  /// The difference is believed as soon as it is more than noise. [Efron, Morris 1973]
+  static dvec3 squareOf(const dvec3& expected, const dvec3& difference, const dvec3& noise, double doubt, const dvec3& rest) {
+    const dvec3 spread = glm::max(difference * difference - doubt * noise, dvec3(0.0));
+    const dvec3 trust = spread / glm::max(spread + noise, dvec3(1e-300));
+    const dvec3 known = expected + trust * difference;
+    return known * known + (1.0 - trust) * rest;
+  }
+
   template <class Add>
   void addAround(Add add) {
     for (uint32_t y = 0; y < m_tilesY; ++y)
@@ -176,11 +199,11 @@ double meanOf(const std::vector<double>& values) {
 
 /// Where between what two ways tell the error lies: at the mean of their logarithms, for with few samples the larger may be ten
 /// times the smaller. What noise has made negative has no logarithm, and stays.
-double shareOfSampled(double expected, double sampled) {
-  if (sampled <= expected) return kSampledShare;
-  if (expected <= 0.0) return 0.0;
-  const double middle = std::pow(expected, 1.0 - kSampledShare) * std::pow(sampled, kSampledShare);
-  return (middle - expected) / (sampled - expected);
+double shareOfSampled(double cautious, double sampled) {
+  if (sampled <= cautious) return kSampledShare;
+  if (cautious <= 0.0) return 0.0;
+  const double middle = std::pow(cautious, 1.0 - kSampledShare) * std::pow(sampled, kSampledShare);
+  return (middle - cautious) / (sampled - cautious);
 }
 
 /// Mean over the tiles with an interval that minds their skewness: where few tiles make the error, the mean is more likely
@@ -205,15 +228,15 @@ FilmError estimateFromAudit(std::span<const shared::AuditRecord> records, uint32
   if (pixels.empty()) return {};
   const Expectation expectation(pixels, tilesX, tilesY);
   const double least = expectation.leastSquare();
-  std::vector<dvec3> expected, sampled;
+  std::vector<dvec3> cautious, sampled;
   for (const Pixel& p : pixels) {
     const dvec3 square = (p.shown - p.even) * (p.shown - p.odd);
     const Expectation::Squares squares = expectation.squaresOf(p);
-    expected.push_back(square / (squares.expected + least));
+    cautious.push_back(square / (squares.cautious + least));
     sampled.push_back(square / (squares.sampled + least));
   }
   // Each way leaves out the largest of its own quotients: of some tiles only one of them knows anything.
-  const std::vector<double> low = tileMeans(pixels, expected, tiles), high = tileMeans(pixels, sampled, tiles);
+  const std::vector<double> low = tileMeans(pixels, cautious, tiles), high = tileMeans(pixels, sampled, tiles);
   const std::vector<double> lowKnown = known(low), highKnown = known(high);
   if (std::min(lowKnown.size(), highKnown.size()) < kLeastTiles) return {};
   const double meanLow = meanOf(lowKnown), meanHigh = meanOf(highKnown), share = shareOfSampled(meanLow, meanHigh);
@@ -231,7 +254,7 @@ bool noiseOutweighsChoice(std::span<const shared::AuditRecord> records, uint32_t
   const double least = expectation.leastSquare();
   std::vector<dvec3> quotients, noises;
   for (const Pixel& p : pixels) {
-    const dvec3 denominator = expectation.squaresOf(p).expected + least;
+    const dvec3 denominator = expectation.expectedSquare(p) + least;
     quotients.push_back((p.shown - p.even) * (p.shown - p.odd) / denominator);
     noises.push_back(2.0 * p.variance / p.samples / denominator);  // variance of a half
   }
