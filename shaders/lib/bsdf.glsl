@@ -212,6 +212,7 @@ bool passesPane(Bsdf f, BsdfSample s) { return kUsePanes && s.mirror && s.transm
 
 const BsdfSample kNoSample = BsdfSample(vec3(0.0), vec3(0.0), 0.0, false, false);
 
+// Of a rough surface the direction alone; zero where there is none.
 BsdfSample sampleTransmission(Bsdf f, vec3 woW, vec3 h, bool mirror, out vec3 dirW) {
   vec3 wo = f.woL;
   float cosO = dot(wo, h);
@@ -227,7 +228,8 @@ BsdfSample sampleTransmission(Bsdf f, vec3 woW, vec3 h, bool mirror, out vec3 di
     if (wi.z >= 0.0) return kNoSample;
     dirW = normalize(toWorld(f, wi));
   }
-  if (dot(f.s.geometricNormal, dirW) >= 0.0 || !mirror) return kNoSample;
+  if (dot(f.s.geometricNormal, dirW) >= 0.0) dirW = vec3(0.0);
+  if (!mirror || dirW == vec3(0.0)) return kNoSample;
   vec3 weight = smoothTransmittance(f, woW, cosO) / f.shares.transmission;
   if (!f.thin) weight /= f.eta * f.eta;
   return mirrorSample(f, woW, dirW, weight, true);
@@ -267,6 +269,7 @@ BsdfSample sampleBsdf(Bsdf f, vec3 woW, float uLobe, vec2 u) {
     vec3 wi = 2.0 * dot(local, h) * h - local;
     if (wi.z <= 0.0) return kNoSample;
     dirW = t * wi.x + b * wi.y + n * wi.z;
+    if (dot(f.s.geometricNormal, dirW) <= 0.0) return kNoSample;
   } else {
     return kNoSample;
   }

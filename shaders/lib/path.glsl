@@ -90,13 +90,14 @@ bool advance(inout Path p) {
   Hit hit;
   uint alphaState = hashCombine(p.sampler_.key ^ 0x51ed270bu, p.sampler_.index ^ (p.bounce << 24));
   ++traceCount;
-  if (!traceClosest(p.originR, p.dirR, kInfinity, alphaState, hit)) {
+  bool met = traceClosest(p.originR, p.dirR, kInfinity, alphaState, hit);
+  if (kUseTransmission && p.absorption != vec3(0.0)) p.throughput *= exp(-p.absorption * (met ? hit.t : kInfinity));
+  if (!met) {
     addEnvironment(p);
     return false;
   }
   vec3 woW = -p.dirR;
   Surface s = makeSurface(hit.triangle, hit.barycentrics, woW);
-  if (kUseTransmission && p.absorption != vec3(0.0)) p.throughput *= exp(-p.absorption * hit.t);
   if (p.result.hit == 0.0) {
     p.result.albedo = s.baseColor;
     p.result.normal = s.normal;

@@ -145,13 +145,14 @@ bool advance(inout Walk w) {
   Hit hit;
   uint alphaState = alphaKey(w, 0x51ed270bu);
   ++traceCount;
-  if (!traceClosest(w.originR, w.dirR, kInfinity, alphaState, hit)) {
+  bool met = traceClosest(w.originR, w.dirR, kInfinity, alphaState, hit);
+  if (kUseTransmission && w.absorption != vec3(0.0)) w.throughput *= exp(-w.absorption * (met ? hit.t : kInfinity));
+  if (!met) {
     addEnvironment(w);
     return false;
   }
   vec3 woW = -w.dirR;
   Surface s = makeSurface(hit.triangle, hit.barycentrics, woW);
-  if (kUseTransmission && w.absorption != vec3(0.0)) w.throughput *= exp(-w.absorption * hit.t);
   if (w.depth == 0u) {
     w.result.albedo = s.baseColor;
     w.result.normal = s.normal;

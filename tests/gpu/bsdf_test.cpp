@@ -75,6 +75,11 @@ std::vector<NamedBsdf> chiSquareCases() {
   coatedGlass.clearcoat = 0.7f;
   coatedGlass.clearcoatAlpha = 0.3f;
   add("CoatedGlass", coatedGlass);
+  shared::BsdfCase silhouette = tilted(glassCase(0.3f, 0.4f, true));  // samples of each layer end below the other's surface
+  silhouette.clearcoat = 1.0f;
+  silhouette.clearcoatAlpha = 0.5f;
+  silhouette.clearcoatNormal = glm::normalize(silhouette.normal + glm::vec3(-0.3f, -0.2f, 0.1f));
+  add("CoatedGlassTilted", silhouette);
   return list;
 }
 
