@@ -32,8 +32,14 @@ Path startPath(uint side, Facet f, uint sampleIndex) {
   return p;
 }
 
-// A side that many paths found dark, as inside a closed body, is not asked again.
-bool isDark(vec3 before) { return push.samplesBefore >= kPathsToBelieveDark && before == vec3(0.0); }
+// What the light of new paths counts for. A side that many paths found dark, as inside a closed body, is seldom asked again; what
+// it then finds counts for the times that it was not. 0: it is not asked.
+float weightOfPaths(uint side, vec3 before) {
+  const float kDarkSidesAsked = 0.25;
+  if (push.samplesBefore < kPathsToBelieveDark || before != vec3(0.0)) return 1.0;
+  float u = toUnit(hashCombine(hashCombine(push.seed, side), push.samplesBefore));
+  return u < kDarkSidesAsked ? 1.0 / kDarkSidesAsked : 0.0;
+}
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
@@ -41,7 +47,8 @@ void main() {
   uint point = (i >> 1) / push.slotCount * push.clusterSize + push.firstSlot + (i >> 1) % push.slotCount, side = 2u * point + (i & 1u);
   bool front = (i & 1u) == 0u;
   vec3 before = push.samplesBefore == 0u ? vec3(0.0) : front ? pointLight[point].indirectFront : pointLight[point].indirectBack;
-  if (isDark(before)) return;
+  float weight = weightOfPaths(side, before);
+  if (weight == 0.0) return;
   PointSite site = pointSites[point];
   Facet f = facetOf(texelFetch(triangles, int(site.triangle)).xyz, cornerWeights(site.barycentrics), vec3(0.0));
   vec3 sum = vec3(0.0);
@@ -55,7 +62,7 @@ void main() {
     p = startPath(side, f, push.samplesBefore + taken);
   }
   // A discarded sample counts as one without light.
-  vec3 after = (before * float(push.samplesBefore) + sum) / float(push.samplesBefore + push.samples);
+  vec3 after = (before * float(push.samplesBefore) + sum * weight) / float(push.samplesBefore + push.samples);
   if (front) pointLight[point].indirectFront = after;
   else pointLight[point].indirectBack = after;
   uint rays = atomicAdd(counters[kCounterRays], traceCount);

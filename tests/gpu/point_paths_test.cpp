@@ -60,15 +60,33 @@ TEST(PointPaths, SharesOfPathsAddUp) {
   for (size_t i = 0; i < once.size(); ++i) EXPECT_NEAR(once[i].indirectFront.g, twice[i].indirectFront.g, 1e-5);
 }
 
-TEST(PointPaths, OutsideIsDarkAndIsSoonAskedNoMore) {
-  LitPoints points(shiningBox());
+TEST(PointPaths, DarkSidesAreSoonAskedSeldom) {
+  SceneBuilder b;
+  addFloor(b, b.diffuse(glm::vec3(0.8f)));
+  LitPoints points(b);  // every path is one ray
   points.paths({LitPoints::kAll, shared::kPathsToBelieveDark, 0, 2, 1});
   const uint64_t before = points.rays();
+  EXPECT_EQ(before, uint64_t(SquarePoints::count()) * 2 * shared::kPathsToBelieveDark);
   const auto light = points.paths({LitPoints::kAll, 4, shared::kPathsToBelieveDark, 2, 1}).light();
-  for (const shared::PointLight& p : light) EXPECT_EQ(p.indirectBack, glm::vec3(0.0f));
-  // Fronts alone: a path of up to two bounces is up to five rays.
-  EXPECT_LE(points.rays() - before, uint64_t(SquarePoints::count()) * 4 * 5);
+  for (const shared::PointLight& p : light) EXPECT_EQ(p.indirectFront, glm::vec3(0.0f));
+  EXPECT_NEAR(double(points.rays() - before), double(SquarePoints::count()) * 2 * 4 / 4, 0.25 * double(SquarePoints::count()) * 2);
   EXPECT_EQ(points.discarded(), 0u);
+}
+
+/// A small bright place that most points do not find by their first paths sends them its light all the same.
+TEST(PointPaths, LightThatIsFoundLateIsNotLost) {
+  SceneBuilder b;
+  addFloor(b, b.diffuse(glm::vec3(0.0f)));
+  b.quad(b.diffuse(glm::vec3(0.8f)), {-0.2f, 1, -0.2f}, {0.2f, 1, -0.2f}, {0.2f, 1, 0.2f}, {-0.2f, 1, 0.2f});
+  b.pointLight({0, 0.8f, 0}, glm::vec3(1.0f), 1.0f);
+  LitPoints points(b);
+  constexpr uint32_t kMany = 256, kPart = shared::kPathsToBelieveDark;
+  const Mean once = frontsOf(points.paths({LitPoints::kAll, kMany, 0, 2, 1}).light());
+  for (uint32_t taken = 0; taken < kMany; taken += kPart) points.paths({LitPoints::kAll, kPart, taken, 2, 2});
+  const Mean parts = frontsOf(points.light());
+  EXPECT_GT(once.value, 0.0);
+  EXPECT_NEAR(parts.value, once.value, 3.0 * std::hypot(parts.deviation, once.deviation));
+  EXPECT_LT(parts.deviation, 0.1 * once.value);
 }
 
 TEST(PointPaths, DirectLightIsNotCountedAgain) {
