@@ -25,7 +25,9 @@ bool isKnown(IndirectTexel light) {
 float alikeness(vec3 posR, vec3 normal, uint object, GatherSite other) {
   const float kSlope = 0.12;  // sine over the tangent plane at which the weight has fallen to 1/e
   vec3 apart = other.posR - posR;
-  float height = dot(apart, normal), d2 = dot(apart, apart);
+  // Far from render space's origin places are on one plane only to the rounding of their coordinates.
+  const float kRounding = 8.0 / 16777216.0;
+  float height = max(abs(dot(apart, normal)) - kRounding * maxComponent(abs(posR)), 0.0), d2 = dot(apart, apart);
   float level = d2 > 0.0 ? height * height / (d2 * kSlope * kSlope) : 0.0;
   float cosine = max(dot(normal, octDecode(other.normal)), 0.0);
   float c2 = cosine * cosine, c4 = c2 * c2, c8 = c4 * c4;

@@ -55,7 +55,8 @@ class JointBilateralReference {
   static double alikeness(const Seen& s, const GatherSite& other) {
     if (!seesSurface(other) || other.object != s.object) return 0.0;
     const glm::dvec3 apart = glm::dvec3(other.posR) - s.posR;
-    const double height = glm::dot(apart, s.normal), d2 = glm::dot(apart, apart);
+    const double d2 = glm::dot(apart, apart), largest = std::max({std::abs(s.posR.x), std::abs(s.posR.y), std::abs(s.posR.z)});
+    const double height = std::max(std::abs(glm::dot(apart, s.normal)) - 8.0 / 16777216.0 * largest, 0.0);
     const double level = d2 > 0.0 ? height * height / (d2 * 0.12 * 0.12) : 0.0;
     return std::pow(std::max(0.0, glm::dot(s.normal, decodedNormal(other.normal))), 16.0) * std::exp(-level);
   }

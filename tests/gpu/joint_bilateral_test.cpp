@@ -255,6 +255,24 @@ TEST(JointBilateral, ALinearRampOnAPlaneIsReproduced) {
       }
 }
 
+/// Seen from near by, far from render space's origin: neighbours are 0.2 mm apart, and their coordinates err by as much.
+TEST(JointBilateral, APlaneFarFromTheOriginIsOnePlane) {
+  Picture p = planePicture(33, 33);
+  std::mt19937 random(5);
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(1.0, 2.0, 3.0)), across = glm::normalize(glm::dvec3(2.0, -1.0, 0.0));
+  eachPixel(p, [&](int x, int y, GatherSite& s, IndirectTexel& l) {
+    s.posR = glm::vec3(1e4 * normal + 2e-4 * (double(x) * across + double(y) * glm::cross(normal, across)));
+    s.normal = gpu::octEncode(glm::vec3(normal));
+    l = randomLight(random);
+  });
+  const auto varianceOf = [](const Texels& light) {
+    double sum = 0.0, squares = 0.0;
+    for (const IndirectTexel& l : light) sum += l.diffuse.g, squares += double(l.diffuse.g) * l.diffuse.g;
+    return squares / double(light.size()) - sum * sum / double(light.size() * light.size());
+  };
+  EXPECT_LT(varianceOf(filter(p, 7)), 0.05 * varianceOf(p.light));  // means of 49, and fewer at the borders
+}
+
 TEST(JointBilateral, WhatHasNoParentOfItsOwnIsGuessedAndGuessesWeighNothing) {
   Picture p = planePicture(33, 33);
   lightGrid(p, 16, [](int, int) { return sampledLight(glm::vec3(2.0f), glm::vec3(5.0f)); });
