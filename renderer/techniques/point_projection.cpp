@@ -69,7 +69,8 @@ void PointProjectionTechnique::setParameter(const std::string& name, double valu
   else if (name == "maxSamples") s.maxSamples = whole;
   const bool points = s.points != before.points || s.clusters != before.clusters || s.bouncePoints != before.bouncePoints;
   if (points) m_pointsKnown = false;
-  if (points || s.microSize != before.microSize || s.bounces != before.bounces || s.paths != before.paths ||
+  const bool gatheredBounces = s.paths == 0 && s.correctionRays != before.correctionRays;
+  if (points || gatheredBounces || s.microSize != before.microSize || s.bounces != before.bounces || s.paths != before.paths ||
       s.relightSamples != before.relightSamples)
     forgetLight();
 }
@@ -124,15 +125,31 @@ Result<void> PointProjectionTechnique::updatePoints(const TechniqueContext& cont
                   {"move points", float(updated->moveMs)},
                   {"cluster points", float(updated->clusterMs)},
                   {"upload points", float(updated->uploadMs)}};
+  forgetLight();
+  if (!m_pointsKnown || updated->changed) {
+    m_pointsKnown = false;  // until all that is made of them is there
+    if (auto done = indexPoints(context); !done) return done;
+  }
   m_lightingRevision = context.lightingRevision;
   m_pointsKnown = true;
-  forgetLight();
+  return {};
+}
+
+// Grids of the points, and the sides where bounces arrive by gathers: both of the first points of every cluster.
+Result<void> PointProjectionTechnique::indexPoints(const TechniqueContext& context) {
   const PointLayout layout = layoutOfPoints();
-  const uint32_t sides = 2 * layout.clusterCount;
   m_bounceSlots = std::min(std::max(1u, m_settings.bouncePoints / layout.clusterCount), layout.clusterSize);
-  auto list = makeBuffer(context.device, "pointProjection.bounceList", size_t(sides) * m_bounceSlots * sizeof(uint32_t));
+  std::vector<uint32_t> sides;
+  for (uint32_t cluster = 0; cluster < layout.clusterCount; ++cluster)
+    for (uint32_t side = 0; side < 2 * m_bounceSlots; ++side) sides.push_back(2 * cluster * layout.clusterSize + side);
+  vk::BufferDesc desc;
+  desc.owner = "point-projection";
+  desc.name = "pointProjection.bounceSides";
+  auto list = vk::createBufferWith(context.device, desc, std::span<const uint32_t>(sides));
   if (!list) return list.error();
-  m_bounceList = list.take();
+  m_bounceSides = list.take();
+  m_bounceSideCount = uint32_t(sides.size());
+  ++m_work.pointIndices;
   if (auto done = m_nearestGrid.update(context.device, m_points, std::min(kBounceSlots, m_points.clusterSize()), kNearestReach); !done) return done;
   return m_pointGrid.update(context.device, m_points, std::min(m_bounceSlots, m_points.clusterSize()));
 }
@@ -165,7 +182,7 @@ std::vector<vk::Binding> PointProjectionTechnique::gatherBindings(const Techniqu
 }
 
 std::vector<vk::Binding> PointProjectionTechnique::bounceBindings(const TechniqueContext& context) const {
-  return gpu::joined(pointBindings(context, m_bounceList), m_nearestGrid.bindings());
+  return gpu::joined(pointBindings(context, m_bounceSides), m_nearestGrid.bindings());
 }
 
 std::vector<vk::Binding> PointProjectionTechnique::shadeBindings(const TechniqueContext& context) const {

@@ -16,6 +16,7 @@ namespace limn {
 struct PointProjectionWork {
   uint64_t blocksSampled = 0;  ///< got new points
   uint64_t pointUpdates = 0;   ///< of the points as a whole, moved ones included
+  uint64_t pointIndices = 0;   ///< grids of points and lists of their sides
   uint64_t slotsLit = 0;       ///< of every cluster, by rays
   uint64_t bounceSites = 0;    ///< gathered at points
   uint64_t pathSides = 0;      ///< of points, followed paths from
@@ -63,6 +64,7 @@ class PointProjectionTechnique final : public Technique {
   Result<void> balance(const TechniqueContext& context);
   Result<void> makeBuffers(const TechniqueContext& context);
   Result<void> updatePoints(const TechniqueContext& context);
+  Result<void> indexPoints(const TechniqueContext& context);
   PointLayout layoutOfPoints() const;
   PointLightContext lightContext(const TechniqueContext& context) const;
   std::vector<vk::Binding> sceneBindings(const TechniqueContext& context, const vk::Buffer& list) const;
@@ -87,6 +89,7 @@ class PointProjectionTechnique final : public Technique {
   void planLighting();
   void planRefining();
   void pushCoarsePicture();
+  uint32_t startEnd() const;
   void pushStartGrid();
   void pushForget();
   void pushLevels();
@@ -95,7 +98,7 @@ class PointProjectionTechnique final : public Technique {
   void pushRelight(TaskQueue& queue, SlotRange slots, uint32_t samples, WorkRate& rate);
   void pushPaths(TaskQueue& queue, uint32_t samples, uint32_t samplesBefore, uint32_t endSlot);
   void pushSpread(TaskQueue& queue, uint32_t endSlot, bool compose);
-  void pushBounce(bool first, uint32_t endSlot, bool compose);
+  void pushBounce(uint32_t endSlot, bool compose);
   void pushSites(uint32_t from, uint32_t end);
   void pushGather(const char* name, Task::Begin select);
   Result<uint32_t> selectLevel(const TechniqueContext& context, uint32_t stride);
@@ -109,7 +112,6 @@ class PointProjectionTechnique final : public Technique {
   // point_projection_work.cpp
   Result<void> relight(const TechniqueContext& context, SlotRange slots, uint32_t samples);
   Result<void> paths(const TechniqueContext& context, SlotRange slots, uint32_t samples, uint32_t samplesBefore);
-  Result<uint32_t> listBounceSites(const TechniqueContext& context, bool first);
   Result<uint32_t> beginSpread(const TechniqueContext& context, uint32_t endSlot, bool compose);
   Result<void> spread(const TechniqueContext& context, SlotRange slots, bool compose);
   Result<void> sites(const TechniqueContext& context, uint32_t first, uint32_t count);
@@ -133,10 +135,10 @@ class PointProjectionTechnique final : public Technique {
   gpu::TailoredPass m_sites, m_shade;
 
   PixelOrder m_pixelOrder;
-  vk::Buffer m_order, m_list, m_siteBuffer, m_indirect, m_filtered, m_lookedUp, m_bounceList, m_counters;
+  vk::Buffer m_order, m_list, m_siteBuffer, m_indirect, m_filtered, m_lookedUp, m_bounceSides, m_counters;
   uint32_t m_width = 0, m_height = 0;  ///< [pixel] the buffers were made for
   uint32_t m_bounceSlots = 0;          ///< of every cluster, gathered at for bounces
-  uint32_t m_bounceSites = 0;          ///< in m_bounceList
+  uint32_t m_bounceSideCount = 0;      ///< of m_bounceSides
   bool m_useFiltered = false;          ///< m_filtered holds what m_indirect does, filtered
 
   TaskQueue m_tasks;     ///< of the present pass

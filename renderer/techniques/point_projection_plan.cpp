@@ -31,7 +31,7 @@ void PointProjectionTechnique::planPreview() {
   if (!m_lit) pushPreviewLight();
   pushCoarsePicture();
   if (m_lit) return;
-  pushSites(m_pixelOrder.levelEnd[0], uint32_t(m_pixelOrder.pixels.size()));
+  pushSites(startEnd(), uint32_t(m_pixelOrder.pixels.size()));
   pushFill(PixelOrder::kStrides[0] / 2);
   pushShade(uint32_t(m_pixelOrder.pixels.size()), true);
 }
@@ -59,7 +59,7 @@ void PointProjectionTechnique::planPass(uint32_t pass) {
   if (!gathers()) return pushShade(pixels, pass == 0);
   if (pass == 0) {
     pushCoarsePicture();
-    pushSites(m_pixelOrder.levelEnd[0], pixels);
+    pushSites(startEnd(), pixels);
     pushLevels();
   } else if (pass == kRefinedPass && refines()) {
     m_dropLookedUp = true;
@@ -78,10 +78,17 @@ void PointProjectionTechnique::planPass(uint32_t pass) {
 
 // A picture of every 8th pixel, as soon as the start grid is gathered.
 void PointProjectionTechnique::pushCoarsePicture() {
-  pushSites(0, m_pixelOrder.levelEnd[0]);
+  pushSites(0, startEnd());
   pushStartGrid();
   pushFill(m_settings.startGrid / 2, PixelOrder::kStrides[0]);
   pushShade(m_pixelOrder.levelEnd[0], true);
+}
+
+// Pixels of the order of which every 8th and the start grid, which may be finer, are the first.
+uint32_t PointProjectionTechnique::startEnd() const {
+  size_t level = 0;
+  while (PixelOrder::kStrides[level] > m_settings.startGrid) ++level;
+  return m_pixelOrder.levelEnd[level];
 }
 
 void PointProjectionTechnique::pushStartGrid() {
@@ -146,7 +153,7 @@ void PointProjectionTechnique::planBounces() {
   for (uint32_t bounce = 0; bounce < bouncesAtPoints(); ++bounce) {
     // Pixels project all points with all bounces but the last; earlier bounces reach only the points that the next one projects.
     const bool seen = bounce + 2 >= m_settings.bounces;
-    pushBounce(bounce == 0, seen ? size : std::min(kBounceSlots, size), bounce + 1 < m_settings.bounces);
+    pushBounce(seen ? size : std::min(kBounceSlots, size), bounce + 1 < m_settings.bounces);
   }
 }
 
@@ -165,8 +172,8 @@ void PointProjectionTechnique::pushPaths(TaskQueue& queue, uint32_t samples, uin
   pushSpread(queue, endSlot, true);
 }
 
-void PointProjectionTechnique::pushBounce(bool first, uint32_t endSlot, bool compose) {
-  m_lighting.push({"bounce", &m_bounceRate, [this, first](const TechniqueContext& c) { return listBounceSites(c, first); },
+void PointProjectionTechnique::pushBounce(uint32_t endSlot, bool compose) {
+  m_lighting.push({"bounce", &m_bounceRate, [this](const TechniqueContext&) -> Result<uint32_t> { return m_bounceSideCount; },
                 [this](const TechniqueContext& c, uint32_t from, uint32_t count) { return gatherAtPoints(c, from, count); }, 32});
   pushSpread(m_lighting, endSlot, compose);
 }

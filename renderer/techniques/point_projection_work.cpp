@@ -69,25 +69,6 @@ Result<void> PointProjectionTechnique::gatherAtPoints(const TechniqueContext& co
   return gpu::runNow(context.device, [&](vk::CommandRecorder& r) { m_gather.recordAtPoints(r, all, push); });
 }
 
-// Both sides of the first points of every cluster; after the first bounce only those that any light reached.
-Result<uint32_t> PointProjectionTechnique::listBounceSites(const TechniqueContext& context, bool first) {
-  const PointLayout layout = m_light.layout();
-  auto lights = first ? Result<std::vector<shared::PointLight>>(std::vector<shared::PointLight>{})
-                      : vk::readBackArray<shared::PointLight>(context.device, m_light.light(), layout.count());
-  if (!lights) return lights.error();
-  std::vector<uint32_t> list;
-  for (uint32_t cluster = 0; cluster < layout.clusterCount; ++cluster)
-    for (uint32_t slot = 0; slot < m_bounceSlots; ++slot) {
-      const uint32_t point = cluster * layout.clusterSize + slot;
-      if (first || (*lights)[point].indirectFront != glm::vec3(0.0f)) list.push_back(2 * point);
-      if (first || (*lights)[point].indirectBack != glm::vec3(0.0f)) list.push_back(2 * point + 1);
-    }
-  m_bounceSites = uint32_t(list.size());
-  if (list.empty()) return 0u;
-  if (auto done = vk::uploadArray(context.device, m_bounceList, std::span<const uint32_t>(list)); !done) return done.error();
-  return m_bounceSites;
-}
-
 // Slots to spread to. Where bounces arrived at all points, there are none, and the points send on what they have.
 Result<uint32_t> PointProjectionTechnique::beginSpread(const TechniqueContext& context, uint32_t endSlot, bool compose) {
   const uint32_t slots = endSlot - std::min(m_bounceSlots, endSlot);

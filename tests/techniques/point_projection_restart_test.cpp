@@ -154,5 +154,41 @@ TEST(PointProjectionRestart, NoGhostWhereverTheWorkWasInterrupted) {
   }
 }
 
+TEST(PointProjectionRestart, FineStartGridsSeeTheNewView) {
+  for (const double stride : {2.0, 4.0, 8.0}) {
+    const SessionConfig config = quick({{"startGrid", stride}});
+    TestSession session(plainScene(), config);
+    session.run(1);  // the points are lit
+    session.apply({viewFrom(0.4)});
+    session.run(1);
+    EXPECT_EQ(session.hash(), freshHash(session.scene(), config, 1)) << stride;
+  }
+}
+
+/// Without paths bounces are gathered at points, one after the other, as in the paper.
+TEST(PointProjectionRestart, GatheredBouncesAreAskedEverywhereAndByTheRaysOfNow) {
+  SessionConfig config = quick({{"paths", 0.0}, {"bounces", 4.0}});
+  TestSession session(plainScene(), config);
+  session.run(1);
+  EXPECT_EQ(workOf(session).bounceSites % 3, 0u) << "a side that the first bounce left dark was not asked again";
+  EXPECT_EQ(workOf(session).bounceSites / 3 % (2 * 256), 0u) << "a side of some cluster was left out";
+  session.apply({parameter("correctionRays", 0.0)});
+  session.run(1);
+  config.parameters.push_back({"correctionRays", 0.0});
+  EXPECT_EQ(session.hash(), freshHash(plainScene(), config, 1));
+}
+
+TEST(PointProjectionRestart, PointsThatStayAreNotIndexedAgain) {
+  TestSession session(plainScene(), quick());
+  session.run(1);
+  const uint64_t before = workOf(session).pointIndices;
+  session.apply({intensity(5.0f)});
+  session.run(1);
+  EXPECT_EQ(workOf(session).pointIndices, before);
+  session.apply({blockAt(0.2)});
+  session.run(1);
+  EXPECT_EQ(workOf(session).pointIndices, before + 1);
+}
+
 }  // namespace
 }  // namespace limn::test
