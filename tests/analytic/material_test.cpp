@@ -26,6 +26,21 @@ TEST(Transmission, ClearShapesVanishInAFurnace) {
   }
 }
 
+/// Behind a single face that absorbs, the medium has no end: of a furnace nothing comes through, on no way of finding it.
+TEST(Transmission, AnOpenMediumSwallowsTheSky) {
+  for (const float roughness : {0.0f, 0.4f}) {
+    SceneBuilder b;
+    const uint32_t water = glass(b, 1.5f, 1);
+    b.scene.materials[water].roughness = roughness;
+    b.scene.materials[water].attenuationColor = glm::vec3(0.5f);
+    b.scene.materials[water].attenuationDistance = 1.0f;
+    b.scene.environment.radiance = glm::vec3(1.0f);
+    floorOf(b, water, 3);
+    lookParallel(b, {0, 1, 0}, {0, 0, 0}, 1e-3f);
+    expectMean(render(b), fresnel(1.0, 1.5), 0.04, roughness > 0.0f ? 0.1 : 0.0);  // rough faces reflect by other angles too
+  }
+}
+
 /// Fresnel's reflectance never passes 1, whatever colour an extension multiplies it by.
 TEST(Transmission, StrongSpecularColourSendsBackNoMoreThanArrives) {
   SceneBuilder b;
