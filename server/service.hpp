@@ -52,8 +52,9 @@ class Service : private TransportHandler {
                                                StatusQueue& replies);
   ~Service() override;
 
-  /// Asks the renderer for what a journal kept, as if a client did. Before run().
-  void takeUp(const std::vector<protocol::ClientMessage>& messages);
+  /// The renderer's scene is there, seen through `view`: the renderer is asked for what a journal kept, as if a client did. Any
+  /// thread, once, before the renderer looks into its mailbox and before setReady(true).
+  void begin(const View& view, const std::vector<protocol::ClientMessage>& kept);
   uint16_t port() const { return m_transport->port(); }
   void run() { m_transport->run(); }       ///< the loop thread is the one that calls this; returns after a drain
   void drain() { m_transport->drain(); }   ///< any thread
@@ -92,6 +93,8 @@ class Service : private TransportHandler {
   void edit(ClientSession& session, uint32_t seq, const std::vector<protocol::Edit>& edits, bool batch = false);
   /// `view`: as the edits before leave it.
   static void addEdit(EditJob& job, const protocol::Edit& wire, View& view);
+  /// An edit that leaves this view is on its way.
+  void noteMoved(const Origin& by, const View& view);
   bool askLoader(ClientSession& session, LoaderJob job);
   /// False, with an error told, when too much waits already.
   bool ask(ClientSession& session, uint32_t seq, Request request);
@@ -108,6 +111,7 @@ class Service : private TransportHandler {
   void checkErrorWaits(ClientSession& session, const FrameInfo& info);
 
   // service_journal.cpp: what outlives the process
+  void takeUp(const std::vector<protocol::ClientMessage>& messages);
   void rememberUnacknowledged(const Origin& from, protocol::ClientMessage message);
   void noteAccepted(const Origin& from);
   void noteTakenUp(const Origin& from);
@@ -140,6 +144,7 @@ class Service : private TransportHandler {
   double m_aloneSince = 0.0;               ///< [s] no client since then
   const double m_begunAt;                  ///< [s]
 
+  // Written by begin() too, and not looked at before setReady(true): m_view, m_viewEdits, m_takingUp.
   View m_view;                             ///< as the edits sent so far leave it; completes lenses of camera edits
   std::set<std::pair<ConnectionId, uint32_t>> m_viewEdits;  ///< client and seq of those that were not answered yet
   std::set<std::pair<ConnectionId, uint32_t>> m_batches;    ///< the same
@@ -151,7 +156,7 @@ class Service : private TransportHandler {
   std::set<ConnectionId> m_editors;        ///< edited since the others were last told
   bool m_describing = false;               ///< a describe of our own is on its way
   uint32_t m_loadedRevision = 0;           ///< of the scene that was loaded last; pictures below it show another
-  bool m_viewDoubtful = true;              ///< an edit was refused, or nothing is known yet
+  bool m_viewDoubtful = false;             ///< an edit was refused
   double m_lastBroadcast = 0.0, m_lastStatus = 0.0;  ///< [s]
 };
 

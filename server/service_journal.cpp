@@ -24,7 +24,16 @@ std::vector<std::vector<protocol::Edit>> groupsOf(const protocol::Batch& batch) 
   return {{light}, {image}};
 }
 
+bool holdsView(const std::vector<Edit>& edits) {
+  return std::any_of(edits.begin(), edits.end(), [](const Edit& edit) { return std::holds_alternative<SetView>(edit); });
+}
+
 }  // namespace
+
+void Service::begin(const View& view, const std::vector<protocol::ClientMessage>& kept) {
+  m_view = view;
+  takeUp(kept);
+}
 
 void Service::takeUp(const std::vector<protocol::ClientMessage>& messages) {
   std::vector<std::vector<protocol::Edit>> groups;
@@ -39,9 +48,12 @@ void Service::takeUp(const std::vector<protocol::ClientMessage>& messages) {
     View view = m_view;
     for (size_t i = first; i < std::min(groups.size(), first + shared); ++i)
       for (const protocol::Edit& edit : groups[i]) addEdit(job, edit, view);
+    const Origin from = job.request.from;
+    const bool moves = holdsView(job.request.edits);
     const bool taken = job.images.empty() ? m_mailbox.push(std::move(job.request)) : m_loader->request(std::move(job));
-    m_takingUp += taken;
-    if (!taken) logWarning("an edit of the journal is not taken up: too many wait");
+    if (taken) ++m_takingUp;
+    else logWarning("an edit of the journal is not taken up: too many wait");
+    if (taken && moves) noteMoved(from, view);
   }
   if (!groups.empty()) logInfo("edits of the journal are taken up: " + std::to_string(groups.size()));
 }

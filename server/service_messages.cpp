@@ -188,13 +188,15 @@ void Service::edit(ClientSession& session, uint32_t seq, const std::vector<proto
   const bool taken = job.images.empty() ? ask(session, seq, std::move(job.request)) : askLoader(session, std::move(job));
   if (!taken) return;
   rememberUnacknowledged({session.id(), seq}, std::move(whole));
-  if (moves) {
-    m_view = view;
-    m_viewEdits.emplace(session.id(), seq);
-  }
+  if (moves) noteMoved({session.id(), seq}, view);
   if (batch) m_batches.emplace(session.id(), seq);
   session.lastEditSeq = seq;
   ++m_counters.edits;
+}
+
+void Service::noteMoved(const Origin& by, const View& view) {
+  m_view = view;
+  m_viewEdits.emplace(by.client, by.seq);
 }
 
 bool Service::askLoader(ClientSession& session, LoaderJob job) {

@@ -76,6 +76,7 @@ Result<std::shared_ptr<Journal>> openJournal(const DaemonOptions& options) {
 
 /// The scene to begin with: that of the journal's last `load`, where there is one.
 Result<std::filesystem::path> sceneOf(const DaemonOptions& options, Journal& journal) {
+  if (Result<void> begun = journal.begin(); !begun) return begun.error();
   for (const protocol::ClientMessage& message : journal.messages()) {
     const auto* load = std::get_if<protocol::Load>(&message);
     if (!load) continue;
@@ -85,14 +86,6 @@ Result<std::filesystem::path> sceneOf(const DaemonOptions& options, Journal& jou
     if (Result<void> aside = journal.setAside(); !aside) return aside.error();
   }
   return options.scene;
-}
-
-/// Has the renderer take up what the journal holds; gives the scene to begin with.
-Result<std::filesystem::path> takeUp(const DaemonOptions& options, Journal& journal, Service& service) {
-  if (Result<void> begun = journal.begin(); !begun) return begun.error();
-  const Result<std::filesystem::path> scene = sceneOf(options, journal);
-  if (scene) service.takeUp(journal.messages());
-  return scene;
 }
 
 Result<void> serve(const DaemonOptions& options, SignalWatcher& signals) {
@@ -112,15 +105,16 @@ Result<void> serve(const DaemonOptions& options, SignalWatcher& signals) {
   if (!served) return served.error();
   Service& service = **served;
   Result<std::filesystem::path> scene = options.scene;
-  if (journal) scene = takeUp(options, *journal, service);
+  if (journal) scene = sceneOf(options, *journal);
   if (!scene) return scene.error();
   signals.start([&] {
     logInfo("asked to end: clients are told");
     service.drain();
   });
   std::atomic<bool> begun = false;
-  const auto ready = [&] {
+  const auto ready = [&](const View& view) {
     begun = true;
+    service.begin(view, journal ? journal->messages() : std::vector<protocol::ClientMessage>());
     service.setReady(true);
     std::printf("listening on %s\n", address(options, service.port()).c_str());
     std::fflush(stdout);

@@ -48,14 +48,14 @@ RenderThread::~RenderThread() {
   if (m_thread.joinable()) (void)finish();
 }
 
-void RenderThread::start(std::filesystem::path scene, std::function<void()> ready, std::function<void()> ended) {
+void RenderThread::start(std::filesystem::path scene, std::function<void(const View&)> ready, std::function<void()> ended) {
   m_started = true;
   m_startPromise.set_value({std::move(scene), std::move(ready), std::move(ended)});
 }
 
 Result<void> RenderThread::finish() {
   m_mailbox.close();
-  if (!m_started) start({}, [] {}, [] {});
+  if (!m_started) start({}, [](const View&) {}, [] {});
   m_thread.join();
   return m_outcome;
 }
@@ -65,7 +65,7 @@ Result<void> RenderThread::serve(Session& session, StatusQueue& replies, const S
   Result<Status> status = session.status();
   if (!status) return status.error();
   replies.setStatus(status.take());
-  start.ready();
+  start.ready(session.scene().view);
   return session.run();
 }
 

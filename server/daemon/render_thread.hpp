@@ -22,16 +22,17 @@ class RenderThread {
 
   /// Waits for the device. Errors: those of vk::Device::open.
   Result<void> opened() { return m_opened.get(); }
-  /// Loads a scene and renders until the mailbox is closed. `ready` is called when the first edit could be applied,
-  /// `ended` at the end; both on the render thread. The boxes' wake functions are set by now.
-  void start(std::filesystem::path scene, std::function<void()> ready, std::function<void()> ended);
+  /// Loads a scene and renders until the mailbox is closed. `ready` is called with the scene's view when the first edit could be
+  /// applied, `ended` at the end; both on the render thread. The boxes' wake functions are set by now.
+  void start(std::filesystem::path scene, std::function<void(const View&)> ready, std::function<void()> ended);
   /// Closes the mailbox, waits for the thread, and says why it ended.
   Result<void> finish();
 
  private:
   struct Start {
     std::filesystem::path scene;
-    std::function<void()> ready, ended;
+    std::function<void(const View&)> ready;
+    std::function<void()> ended;
   };
   static Result<void> serve(Session& session, StatusQueue& replies, const Start& start);
   void run(DaemonOptions options, FrameSlot& frames, StatusQueue& replies);

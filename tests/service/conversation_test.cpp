@@ -130,6 +130,27 @@ TEST(Conversation, absentLensFieldsKeepTheirValue) {
   EXPECT_EQ(scene.view.yfov, 0.625f);
 }
 
+TEST(Conversation, theFirstEditOfAllKeepsTheLensOfTheScene) {
+  TestService::Options options;
+  protocol::CameraEdit kept;           // by the journal
+  kept.view = moveCamera(0, 3.0).view;
+  kept.view.znear = 0.25f;
+  options.kept = {protocol::Batch{1, {kept}}};
+  TestService server(options);
+  server.renderer->hold(true);         // it has described nothing yet
+  TestClient client(server.port());
+  client.greet();
+  uint32_t seq = client.nextSeq();
+  client.send(moveCamera(seq, 5.0));
+  server.renderer->hold(false);
+  client.awaitReply<protocol::Ack>(seq);
+  seq = client.nextSeq();
+  client.send(protocol::Describe{seq});
+  const auto scene = client.await<protocol::SceneMessage>([&](const auto& s) { return s.seq == seq; });
+  EXPECT_EQ(scene.view.yfov, 0.625f);
+  EXPECT_EQ(scene.view.znear, 0.25f);
+}
+
 TEST(Conversation, pickNamesWhatIsThereOrNothing) {
   TestService server;
   TestClient client(server.port());

@@ -19,7 +19,7 @@ FakeRenderer::FakeRenderer(const Options& options, Mailbox& mailbox, FrameSlot& 
   m_scene.meshNames = {"box"};
   m_scene.technique = "fake";
   m_scene.parameters = {{"depth", 3.0}};
-  m_scene.view.lens.yfov = 0.625f;
+  m_scene.view = view();
   m_scene.width = options.width;
   m_scene.height = options.height;
   m_thread = std::thread([this] { run(); });
@@ -28,6 +28,12 @@ FakeRenderer::FakeRenderer(const Options& options, Mailbox& mailbox, FrameSlot& 
 FakeRenderer::~FakeRenderer() {
   m_mailbox.close();
   m_thread.join();
+}
+
+View FakeRenderer::view() {
+  View view;
+  view.lens.yfov = 0.625f;
+  return view;
 }
 
 std::vector<uint8_t> FakeRenderer::pixels(const Options& options, uint64_t frameId) {

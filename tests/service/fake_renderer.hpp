@@ -24,6 +24,8 @@ class FakeRenderer {
   FakeRenderer(const Options& options, Mailbox& mailbox, FrameSlot& frames, StatusQueue& replies);
   ~FakeRenderer();
 
+  /// Of the scene that it begins with.
+  static View view();
   uint64_t framesPublished() const { return m_published; }
   /// The pixels of a picture, for comparison with what arrived.
   static std::vector<uint8_t> pixels(const Options& options, uint64_t frameId);

@@ -34,6 +34,7 @@ TestService::TestService(const Options& options) {
   if (!opened) ADD_FAILURE() << opened.error().text();
   service = opened.take();
   renderer = std::make_unique<FakeRenderer>(options.renderer, mailbox, frames, replies);
+  service->begin(renderer->view(), options.kept);
   if (options.ready) service->setReady(true);
   loop = std::thread([this] { service->run(); });
 }

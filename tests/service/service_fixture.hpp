@@ -23,6 +23,7 @@ class TestService {
     FakeRenderer::Options renderer;
     std::function<void(ServiceConfig&)> configure = [](ServiceConfig&) {};
     bool ready = true;
+    std::vector<protocol::ClientMessage> kept = {};   ///< by a journal
   };
   TestService() : TestService(Options{}) {}
   explicit TestService(const Options& options);
