@@ -141,7 +141,6 @@ Result<void> Journal::begin() {
     return {};
   }
   logWarning(m_file.string() + ": the last " + std::to_string(before) + " starts with it came to nothing; it is set aside");
-  confirm();
   return setAside();
 }
 
@@ -181,6 +180,7 @@ Result<void> Journal::rewrite() {
 }
 
 Result<void> Journal::setAside() {
+  confirm();
   fs::path aside;
   std::error_code problem;
   for (uint32_t n = 1; aside.empty() || fs::exists(aside, problem); ++n) aside = m_file.string() + ".aside." + std::to_string(n);

@@ -32,7 +32,7 @@ class Journal {
   Result<void> begin();
   /// The process lives on with what the journal holds, or did not end because of it.
   void confirm();
-  /// Moves what there is to FILE.aside.N and goes on empty. Errors: "io".
+  /// Moves what there is to FILE.aside.N and goes on empty and confirmed. Errors: "io".
   Result<void> setAside();
 
   const std::filesystem::path& file() const { return m_file; }

@@ -9,6 +9,7 @@
 #include "renderer/scene/environment_image.hpp"
 #include "renderer/techniques/technique_info.hpp"
 #include "server/daemon/daemon_options.hpp"
+#include "server/daemon/journal_start.hpp"
 #include "server/daemon/render_thread.hpp"
 #include "server/daemon/signal_watcher.hpp"
 #include "server/service.hpp"
@@ -74,20 +75,6 @@ Result<std::shared_ptr<Journal>> openJournal(const DaemonOptions& options) {
   return std::shared_ptr<Journal>(opened.take());
 }
 
-/// The scene to begin with: that of the journal's last `load`, where there is one.
-Result<std::filesystem::path> sceneOf(const DaemonOptions& options, Journal& journal) {
-  if (Result<void> begun = journal.begin(); !begun) return begun.error();
-  for (const protocol::ClientMessage& message : journal.messages()) {
-    const auto* load = std::get_if<protocol::Load>(&message);
-    if (!load) continue;
-    const Result<std::filesystem::path> scene = resolveAsset(options.assetRoot, load->uri);
-    if (scene) return scene;
-    logWarning("the scene that was loaded last is gone, its edits are set aside: " + scene.error().text());
-    if (Result<void> aside = journal.setAside(); !aside) return aside.error();
-  }
-  return options.scene;
-}
-
 Result<void> serve(const DaemonOptions& options, SignalWatcher& signals) {
   Result<std::shared_ptr<Journal>> opened = openJournal(options);
   if (!opened) return opened.error();
@@ -104,31 +91,33 @@ Result<void> serve(const DaemonOptions& options, SignalWatcher& signals) {
   const Result<std::unique_ptr<Service>> served = Service::open(config, mailbox, frames, replies);
   if (!served) return served.error();
   Service& service = **served;
-  Result<std::filesystem::path> scene = options.scene;
-  if (journal) scene = sceneOf(options, *journal);
+  JournalStart kept(options, journal);
+  const Result<std::filesystem::path> scene = kept.scene();
   if (!scene) return scene.error();
   signals.start([&] {
     logInfo("asked to end: clients are told");
     service.drain();
   });
   std::atomic<bool> begun = false;
-  const auto ready = [&](const View& view) {
+  RenderCalls calls;
+  calls.refused = [&](const Error& error) { return kept.insteadOf(error); };
+  calls.ready = [&](const View& view) {
     begun = true;
-    service.begin(view, journal ? journal->messages() : std::vector<protocol::ClientMessage>());
+    service.begin(view, kept.messages());
     service.setReady(true);
     std::printf("listening on %s\n", address(options, service.port()).c_str());
     std::fflush(stdout);
   };
-  const auto ended = [&] {
+  calls.ended = [&] {
     service.setReady(false);
     service.drain();
   };
-  renderer.start(*scene, ready, ended);
+  renderer.start(*scene, std::move(calls));
   service.run();
   // Render thread and watcher reach into the service: they end first. A second signal ends the process whatever it waits for.
   Result<void> outcome = renderer.finish();
   service.finishWork();
-  if (journal && (outcome || !begun)) journal->confirm();  // what cannot even be loaded is not the edits' fault
+  kept.ended(outcome, begun);
   signals.stop();
   return outcome;
 }

@@ -48,24 +48,24 @@ RenderThread::~RenderThread() {
   if (m_thread.joinable()) (void)finish();
 }
 
-void RenderThread::start(std::filesystem::path scene, std::function<void(const View&)> ready, std::function<void()> ended) {
+void RenderThread::start(std::filesystem::path scene, RenderCalls calls) {
   m_started = true;
-  m_startPromise.set_value({std::move(scene), std::move(ready), std::move(ended)});
+  m_startPromise.set_value({std::move(scene), std::move(calls)});
 }
 
 Result<void> RenderThread::finish() {
   m_mailbox.close();
-  if (!m_started) start({}, [](const View&) {}, [] {});
+  if (!m_started) start({}, {});
   m_thread.join();
   return m_outcome;
 }
 
-Result<void> RenderThread::serve(Session& session, StatusQueue& replies, const Start& start) {
+Result<void> RenderThread::serve(Session& session, StatusQueue& replies, const RenderCalls& calls) {
   // The first client's hello names the device: the status must be there before anybody is let in.
   Result<Status> status = session.status();
   if (!status) return status.error();
   replies.setStatus(status.take());
-  start.ready(session.scene().view);
+  calls.ready(session.scene().view);
   return session.run();
 }
 
@@ -77,10 +77,15 @@ void RenderThread::run(DaemonOptions options, FrameSlot& frames, StatusQueue& re
   options.scene = start.scene;
   if (device && !m_mailbox.closed()) {
     Result<std::unique_ptr<Session>> session = makeSession(**device, options, m_mailbox, frames, replies);
-    m_outcome = session ? serve(**session, replies, start) : Result<void>(session.error());
+    const std::optional<std::filesystem::path> other = session ? std::nullopt : start.calls.refused(session.error());
+    if (other) {
+      options.scene = *other;
+      session = makeSession(**device, options, m_mailbox, frames, replies);
+    }
+    m_outcome = session ? serve(**session, replies, start.calls) : Result<void>(session.error());
   }
   if (!m_outcome) replies.push(ErrorReply{{}, m_outcome.error()});
-  start.ended();
+  start.calls.ended();
 }
 
 }  // namespace limn::server

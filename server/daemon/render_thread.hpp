@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <future>
+#include <optional>
 #include <thread>
 
 #include "renderer/base/result.hpp"
@@ -10,6 +11,14 @@
 namespace limn { class Session; }
 
 namespace limn::server {
+
+/// Whom the render thread tells what, on the render thread.
+struct RenderCalls {
+  /// The scene cannot be begun with: another to begin with, if there is one.
+  std::function<std::optional<std::filesystem::path>(const Error&)> refused = [](const Error&) { return std::nullopt; };
+  std::function<void(const View&)> ready = [](const View&) {};   ///< the first edit could be applied; the scene's view
+  std::function<void()> ended = [] {};
+};
 
 /// The thread that owns device, scene and session. It meets the others in the three boxes only.
 class RenderThread {
@@ -22,19 +31,17 @@ class RenderThread {
 
   /// Waits for the device. Errors: those of vk::Device::open.
   Result<void> opened() { return m_opened.get(); }
-  /// Loads a scene and renders until the mailbox is closed. `ready` is called with the scene's view when the first edit could be
-  /// applied, `ended` at the end; both on the render thread. The boxes' wake functions are set by now.
-  void start(std::filesystem::path scene, std::function<void(const View&)> ready, std::function<void()> ended);
+  /// Loads a scene and renders until the mailbox is closed. The boxes' wake functions are set by now.
+  void start(std::filesystem::path scene, RenderCalls calls);
   /// Closes the mailbox, waits for the thread, and says why it ended.
   Result<void> finish();
 
  private:
   struct Start {
     std::filesystem::path scene;
-    std::function<void(const View&)> ready;
-    std::function<void()> ended;
+    RenderCalls calls;
   };
-  static Result<void> serve(Session& session, StatusQueue& replies, const Start& start);
+  static Result<void> serve(Session& session, StatusQueue& replies, const RenderCalls& calls);
   void run(DaemonOptions options, FrameSlot& frames, StatusQueue& replies);
 
   Mailbox& m_mailbox;

@@ -8,10 +8,15 @@
 namespace limn::server::testing {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// A daemon with its journal in a directory, and a client of it that does not watch.
 struct Kept {
-  explicit Kept(const test::ScratchDirectory& scratch)
-      : daemon({"--asset-root", kScenes, "--journal", scratch.file("journal")}), client(daemon.port) {
+  explicit Kept(const test::ScratchDirectory& scratch, const std::string& scenes = kScenes)
+      : daemon({"--scene", scenes + "/cornell-box.glb", "--listen", "127.0.0.1:0", "--size", "64x64", "--state-dir",
+                LIMN_BUILD_DIR "/tests/state", "--asset-root", scenes, "--journal", scratch.file("journal")},
+               {}),
+        client(daemon.port) {
     client.greet(false);
   }
   Daemon daemon;
@@ -23,6 +28,34 @@ protocol::SceneMessage describe(TestClient& client) {
   const uint32_t seq = client.nextSeq();
   client.send(protocol::Describe{seq});
   return client.await<protocol::SceneMessage>([&](const auto& scene) { return scene.seq == seq; });
+}
+
+void load(TestClient& client, const std::string& uri) {
+  const uint32_t seq = client.nextSeq();
+  client.send(protocol::Load{seq, uri});
+  client.awaitReply<protocol::Loaded>(seq);
+}
+
+void edit(TestClient& client, uint32_t material, float roughness) {
+  const uint32_t seq = client.nextSeq();
+  client.send(setRoughness(seq, material, roughness));
+  client.awaitReply<protocol::Ack>(seq);
+}
+
+/// An asset root with a scene to begin with, and one to be loaded, which may change.
+std::string changingScenes(const test::ScratchDirectory& scratch) {
+  const std::string scenes = scratch.file("scenes");
+  fs::create_directories(scenes);
+  fs::copy_file(kScene, scenes + "/cornell-box.glb");
+  fs::copy_file(kScenes + "/cornell-glossy.glb", scenes + "/loaded.glb");
+  return scenes;
+}
+
+/// What was set aside of the only journal in the directory.
+std::string setAside(const test::ScratchDirectory& scratch) {
+  for (const auto& entry : fs::directory_iterator(scratch.file("journal")))
+    if (entry.path().extension() == ".1") return test::readText(entry.path());
+  return "";
 }
 
 void kill(Daemon& daemon) {
@@ -102,12 +135,8 @@ TEST(LimndJournal, theSceneThatWasLoadedLastComesBack) {
     const uint32_t shown = client.nextSeq();
     client.send(protocol::Batch{shown, {protocol::ImageEdit{80, 48}, protocol::TechniqueEdit{"point-projection", {}}}});
     client.awaitReply<protocol::Ack>(shown);
-    const uint32_t seq = client.nextSeq();
-    client.send(protocol::Load{seq, "cornell-glossy.glb"});
-    client.awaitReply<protocol::Loaded>(seq);
-    const uint32_t edit = client.nextSeq();
-    client.send(setRoughness(edit, 1, 0.625f));
-    client.awaitReply<protocol::Ack>(edit);
+    load(client, "cornell-glossy.glb");
+    edit(client, 1, 0.625f);
     hash = describe(client).hash;
     kill(kept.daemon);
   }
@@ -118,6 +147,27 @@ TEST(LimndJournal, theSceneThatWasLoadedLastComesBack) {
   EXPECT_EQ(scene.hash, hash);
   EXPECT_EQ(scene.technique, "point-projection");
   EXPECT_EQ(scene.width, 80u);
+}
+
+TEST(LimndJournal, aLoadedSceneThatIsSpoiltKeepsNoDaemonFromStarting) {
+  const test::ScratchDirectory scratch;
+  const std::string scenes = changingScenes(scratch);
+  {
+    Kept kept(scratch, scenes);
+    load(kept.client, "loaded.glb");
+    edit(kept.client, 1, 0.625f);
+    kill(kept.daemon);
+  }
+  std::ofstream(scenes + "/loaded.glb") << "no glTF any more";
+  Kept kept(scratch, scenes);
+  const auto scene = describe(kept.client);
+  EXPECT_EQ(scene.name, "cornell-box.glb");
+  EXPECT_NE(scene.materials.at(1).roughness, 0.625f) << "an edit of another scene";
+  EXPECT_NE(setAside(scratch).find("0.625"), std::string::npos) << "nothing is thrown away";
+  kept.daemon.process.signal(SIGTERM);
+  EXPECT_EQ(kept.daemon.process.wait(), 0);
+  EXPECT_NE(kept.daemon.process.errors().find("the scene that was loaded last cannot be begun with"), std::string::npos)
+      << kept.daemon.process.errors();
 }
 
 }  // namespace
