@@ -75,7 +75,6 @@ void Service::onOpen(ConnectionId id) {
 void Service::onClose(ConnectionId id) {
   if (const ClientSession* session = find(id)) m_counters.framesReplaced += session->framesReplaced;
   m_sessions.erase(id);
-  m_editors.erase(id);
   m_mailbox.push(LeaveRequest{id});  // a full box only keeps a few words of somebody who is gone
   if (m_sessions.empty()) m_aloneSince = nowSeconds();
   tellWatched();

@@ -153,7 +153,7 @@ class Service : private TransportHandler {
   bool m_journalFails = false;             ///< and that was told
   size_t m_takingUp = 0;                   ///< requests of the journal that were not answered yet
   uint32_t m_takenUp = 0;                  ///< seq of the last that was
-  std::set<ConnectionId> m_editors;        ///< edited since the others were last told
+  std::set<ConnectionId> m_editors;        ///< edited since the others were last told; some may have left
   bool m_describing = false;               ///< a describe of our own is on its way
   uint32_t m_loadedRevision = 0;           ///< of the scene that was loaded last; pictures below it show another
   bool m_viewDoubtful = false;             ///< an edit was refused

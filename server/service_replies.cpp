@@ -148,7 +148,9 @@ void Service::tellAll(const Error& error) {
 
 void Service::describeForAll() {
   const double now = nowSeconds();
-  const bool needed = m_viewDoubtful || m_sessions.size() > 1;
+  // An editor knows what it did itself; one that has left may have been the only one.
+  const auto others = [&](const auto& entry) { return entry.second.joined && m_editors != std::set<ConnectionId>{entry.first}; };
+  const bool needed = m_viewDoubtful || (!m_editors.empty() && std::any_of(m_sessions.begin(), m_sessions.end(), others));
   if (!needed) m_editors.clear();
   if (!needed || m_describing || now - m_lastBroadcast < kBroadcastSeconds) return;
   m_lastBroadcast = now;

@@ -250,6 +250,26 @@ TEST(Conversation, anEditIsToldToTheOthersAndNotToItsAuthor) {
     }
 }
 
+TEST(Conversation, anEditIsToldAlsoWhenItsAuthorHasLeft) {
+  TestService server;
+  TestClient other(server.port());
+  other.greet();
+  other.await<protocol::SceneMessage>();
+  server.renderer->hold(true);
+  {
+    TestClient author(server.port());
+    author.greet(false);
+    sendRoughness(author, 1, 0.125f);
+    author.send(protocol::Ping{author.nextSeq()});
+    author.await<protocol::Pong>();    // the edit is on its way, and not acknowledged
+  }
+  server.waitForMetric("limn_clients", 1.0);
+  server.renderer->hold(false);
+  const auto scene = other.await<protocol::SceneMessage>();
+  EXPECT_EQ(scene.cause, protocol::SceneCause::edited);
+  EXPECT_EQ(scene.materials.at(1).roughness, 0.125f);
+}
+
 TEST(Conversation, byeIsAnsweredAndTheSocketClosesWith1000) {
   TestService server;
   TestClient client(server.port());
