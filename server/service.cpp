@@ -102,6 +102,7 @@ void Service::onWake() {
 
 void Service::onTick() {
   const double now = nowSeconds();
+  if (!m_ready) m_aloneSince = now;  // nobody can come yet
   for (auto& [id, session] : m_sessions) {
     checkTimers(session, now);
     askForScene(session);

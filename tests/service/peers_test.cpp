@@ -3,6 +3,7 @@
 #include <fstream>
 #include <set>
 
+#include "renderer/base/clock.hpp"
 #include "tests/service/service_fixture.hpp"
 
 namespace limn::server::testing {
@@ -140,6 +141,19 @@ TEST(Peers, idleExitEndsTheLoop) {
   }
   server.loop.join();
   server.loop = std::thread([] {});
+}
+
+TEST(Peers, timeInWhichNobodyCanComeIsNotIdle) {
+  constexpr double kIdle = 0.5;        // [s]
+  TestService::Options options;
+  options.ready = false;
+  options.configure = [](ServiceConfig& config) { config.idleExitSeconds = kIdle; };
+  TestService server(options);
+  const double begin = nowSeconds();
+  while (nowSeconds() < begin + 2.0 * kIdle) server.metric("limn_clients");
+  server.service->setReady(true);
+  TestClient client(server.port());
+  client.greet();
 }
 
 /// The picture of the scene before is as good as one could wish.
