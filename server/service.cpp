@@ -29,7 +29,7 @@ Service::Service(ServiceConfig config, Mailbox& mailbox, FrameSlot& frames, Stat
       m_frames(frames),
       m_replies(replies),
       m_aloneSince(nowSeconds()),
-      m_begunAt(m_aloneSince) {}
+      m_settledAt(m_aloneSince) {}
 
 Result<std::unique_ptr<Service>> Service::open(ServiceConfig config, Mailbox& mailbox, FrameSlot& frames,
                                                StatusQueue& replies) {
@@ -102,7 +102,7 @@ void Service::onWake() {
 
 void Service::onTick() {
   const double now = nowSeconds();
-  if (!m_ready) m_aloneSince = now;  // nobody can come yet
+  if (!m_ready) m_aloneSince = m_settledAt = now;  // nobody can come yet
   for (auto& [id, session] : m_sessions) {
     checkTimers(session, now);
     askForScene(session);

@@ -34,6 +34,7 @@ struct ServiceConfig {
   double helloSeconds = 5.0;               ///< from the handshake to the client's hello
   double ackSeconds = 10.0;                ///< without an acknowledgement while frames are in flight
   double idleExitSeconds = 0.0;            ///< without a client, then drain; 0: never
+  double safeSeconds = 60.0;               ///< with all that the journal holds: then it is not what ends the process
 };
 
 /// What is counted for /metrics and tests. Loop thread.
@@ -115,6 +116,7 @@ class Service : private TransportHandler {
   void rememberUnacknowledged(const Origin& from, protocol::ClientMessage message);
   void noteAccepted(const Origin& from);
   void noteTakenUp(const Origin& from);
+  void noteSettled();
   void noteRefused(const ErrorReply& reply);
   void keepAccepted();
   void confirmJournal(double now);
@@ -142,7 +144,6 @@ class Service : private TransportHandler {
   ServiceCounters m_counters;
   bool m_watched = false;
   double m_aloneSince = 0.0;               ///< [s] no client since then
-  const double m_begunAt;                  ///< [s]
 
   // Written by begin() too, and not looked at before setReady(true): m_view, m_viewEdits, m_takingUp.
   View m_view;                             ///< as the edits sent so far leave it; completes lenses of camera edits
@@ -153,6 +154,7 @@ class Service : private TransportHandler {
   bool m_journalFails = false;             ///< and that was told
   size_t m_takingUp = 0;                   ///< requests of the journal that were not answered yet
   uint32_t m_takenUp = 0;                  ///< seq of the last that was
+  double m_settledAt = 0.0;                ///< [s] the last of them was answered, or the scene was there
   std::set<ConnectionId> m_editors;        ///< edited since the others were last told; some may have left
   bool m_describing = false;               ///< a describe of our own is on its way
   uint32_t m_loadedRevision = 0;           ///< of the scene that was loaded last; pictures below it show another

@@ -11,7 +11,6 @@ namespace limn::server {
 namespace {
 
 constexpr ConnectionId kJournal = std::numeric_limits<ConnectionId>::max();  // whose edits those of a journal are
-constexpr double kSafeSeconds = 60.0;
 constexpr size_t kMostRequests = Mailbox::kMaxPending / 2;
 
 /// Edits that go together. The image of a sky is there when it is read: what else an edit says of the sky must not come so late, over
@@ -69,23 +68,28 @@ void Service::noteAccepted(const Origin& from) {
 
 void Service::noteTakenUp(const Origin& from) {
   if (from.client != kJournal) return;
-  --m_takingUp;
+  noteSettled();
   m_takenUp = std::max(m_takenUp, from.seq);
+}
+
+void Service::noteSettled() {
+  --m_takingUp;
+  m_settledAt = nowSeconds();
 }
 
 void Service::noteRefused(const ErrorReply& reply) {
   if (reply.to.client != kJournal) return;
-  --m_takingUp;
+  noteSettled();
   logWarning("an edit of the journal does not fit any more: " + reply.error.text());
 }
 
 // A picture of all that the journal holds was made, or a while has passed in which nobody wanted one.
 void Service::confirmJournal(double now) {
-  if (!m_config.journal || m_takingUp > 0) return;
+  if (!m_config.journal || !m_ready || m_takingUp > 0) return;
   const std::shared_ptr<const Frame> newest = m_frames.newest();
   const auto shows = [&](const Origin& applied) { return applied.client == kJournal && applied.seq >= m_takenUp; };
   const bool shown = newest && (m_takenUp == 0 || std::any_of(newest->info.applied.begin(), newest->info.applied.end(), shows));
-  if (shown || now - m_begunAt > kSafeSeconds) m_config.journal->confirm();
+  if (shown || now - m_settledAt > m_config.safeSeconds) m_config.journal->confirm();
 }
 
 // Before any acknowledgement leaves: these are only queued while replies are routed.

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <fstream>
 
+#include "renderer/base/clock.hpp"
 #include "tests/service/cli/run_program.hpp"
 #include "tests/service/service_fixture.hpp"
 
@@ -242,6 +243,30 @@ TEST(Journal, belongsToASceneByItsContents) {
   EXPECT_EQ(fileOf("room.glb", "a room"), first);
   EXPECT_EQ(first.parent_path(), "kept");
   EXPECT_EQ(journalFileFor("kept", scratch.file("absent.glb")).error().code, "io");
+}
+
+TEST(Journal, isNotConfirmedByTheTimeThatLoadingTakes) {
+  constexpr double kSafe = 0.25;       // [s]
+  const test::ScratchDirectory scratch;
+  const std::string file = scratch.file("room.edits");
+  append(*opened(file), {roughness(0, 0.25f)});
+  TestService::Options options;
+  options.ready = false;
+  options.kept = {roughness(0, 0.25f)};
+  options.configure = [&](ServiceConfig& config) {
+    config.journal = opened(file);
+    config.safeSeconds = kSafe;
+    EXPECT_TRUE(config.journal->begin().ok());
+  };
+  TestService server(options);
+  const double begin = nowSeconds();
+  while (nowSeconds() < begin + 2.0 * kSafe) server.metric("limn_clients");
+  const auto starts = [&] { return bytesOf(file + ".lock"); };
+  EXPECT_EQ(starts(), "1\n") << "nothing of it was seen to be safe";
+  server.service->setReady(true);
+  const double end = nowSeconds() + RawClient::kPatience;
+  while (starts() != "0\n" && nowSeconds() < end) server.metric("limn_clients");
+  EXPECT_EQ(starts(), "0\n");
 }
 
 TEST(Journal, holdsAnEditBeforeItIsAcknowledged) {
