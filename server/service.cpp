@@ -127,7 +127,10 @@ void Service::onTick() {
 
 void Service::onDrain() {
   routeReplies();  // a closing session takes no message: what the renderer said before, its own end among it, goes out first
-  for (auto& [id, session] : m_sessions) closeSession(session, CloseCode::goingAway, "the daemon stops");
+  for (auto& [id, session] : m_sessions) {
+    if (m_rendererFailed) closeSession(session, CloseCode::internal, "the renderer has ended");
+    else closeSession(session, CloseCode::goingAway, "the daemon stops");
+  }
 }
 
 void Service::checkTimers(ClientSession& session, double now) {

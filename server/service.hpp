@@ -104,7 +104,7 @@ class Service : private TransportHandler {
   friend struct ReplyHandler;
   void routeReplies();
   void join(ClientSession& session, const SceneSummary& scene);
-  void tellAll(const Error& error);
+  void tellFailure(const Error& error);
   void describeForAll();
   void learnView(const SceneSummary& scene);
   void broadcastScene(const SceneSummary& scene, protocol::SceneCause cause, ConnectionId except);
@@ -143,6 +143,7 @@ class Service : private TransportHandler {
   std::map<EncodingKey, std::shared_ptr<const EncodedFrame>> m_encoded;  ///< of the newest picture
   ServiceCounters m_counters;
   bool m_watched = false;
+  bool m_rendererFailed = false;           ///< and the daemon ends
   double m_aloneSince = 0.0;               ///< [s] no client since then
 
   // Written by begin() too, and not looked at before setReady(true): m_view, m_viewEdits, m_takingUp.

@@ -46,7 +46,7 @@ struct ReplyHandler {
     if (service.m_viewEdits.erase({reply.to.client, reply.to.seq}) > 0) service.m_viewDoubtful = true;
     const bool batch = service.m_batches.erase({reply.to.client, reply.to.seq}) > 0;
     service.m_unacknowledged.erase({reply.to.client, reply.to.seq});
-    if (reply.to.client == kNobody) return service.tellAll(reply.error);
+    if (reply.to.client == kNobody) return service.tellFailure(reply.error);
     if (!session) return service.noteRefused(reply);
     if (session->savingSeq == reply.to.seq) session->savingSeq = 0;
     doneReading(reply.to.seq);
@@ -141,7 +141,8 @@ void Service::join(ClientSession& session, const SceneSummary& scene) {
   sendStatus(session, toWire(m_replies.status()));
 }
 
-void Service::tellAll(const Error& error) {
+void Service::tellFailure(const Error& error) {
+  m_rendererFailed = true;
   for (auto& [id, session] : m_sessions)
     if (session.greeted) sendError(session, 0, error);
 }

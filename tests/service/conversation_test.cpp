@@ -305,6 +305,10 @@ TEST(Conversation, theEndOfTheRendererIsToldToAll) {
     EXPECT_EQ(error.code, "device-lost");
     EXPECT_FALSE(error.seq);
   }
+  server.service->drain();
+  while (first.step()) {
+  }
+  EXPECT_EQ(first.closeCode, 1011);
 }
 
 TEST(Conversation, clientsThatDoNotWatchGetNoPictures) {

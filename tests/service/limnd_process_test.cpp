@@ -80,7 +80,7 @@ TEST(LimndProcess, aDeviceThatIsLostWhileRenderingIsToldToClientsAndExit75) {
   EXPECT_EQ(client.await<protocol::ErrorMessage>().code, "device-lost");
   while (client.step()) {
   }
-  EXPECT_EQ(client.closeCode, 1001);
+  EXPECT_EQ(client.closeCode, 1011);
   EXPECT_EQ(daemon.process.wait(), 75) << daemon.process.errors();
 }
 
