@@ -90,8 +90,8 @@ class Service : private TransportHandler {
   friend struct MessageHandler;
   void greet(ClientSession& session, const protocol::ClientHello& hello);
   void askForScene(ClientSession& session);
-  /// `batch`: the edits stand in a list of the message's, not in the message itself.
-  void edit(ClientSession& session, uint32_t seq, const std::vector<protocol::Edit>& edits, bool batch = false);
+  /// `unsaid`: what the renderer's place of a field, "/edits/0/view/eye", has in front that the message does not: nothing in a `batch`.
+  void edit(ClientSession& session, uint32_t seq, const std::vector<protocol::Edit>& edits, std::string_view unsaid);
   /// `view`: as the edits before leave it.
   static void addEdit(EditJob& job, const protocol::Edit& wire, View& view);
   /// An edit that leaves this view is on its way.
@@ -149,7 +149,7 @@ class Service : private TransportHandler {
   // Written by begin() too, and not looked at before setReady(true): m_view, m_viewEdits, m_takingUp.
   View m_view;                             ///< as the edits sent so far leave it; completes lenses of camera edits
   std::set<std::pair<ConnectionId, uint32_t>> m_viewEdits;  ///< client and seq of those that were not answered yet
-  std::set<std::pair<ConnectionId, uint32_t>> m_batches;    ///< the same
+  std::map<std::pair<ConnectionId, uint32_t>, std::string_view> m_unsaid;  ///< the same: what their places have in front
   std::map<std::pair<ConnectionId, uint32_t>, protocol::ClientMessage> m_unacknowledged;  ///< for the journal: the same
   std::vector<protocol::ClientMessage> m_accepted;          ///< since the journal was last written
   bool m_journalFails = false;             ///< and that was told

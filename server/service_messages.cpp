@@ -52,10 +52,10 @@ struct MessageHandler {
     if (taken) service.rememberUnacknowledged({session.id(), load.seq}, load);
   }
   void operator()(const protocol::SetCamera& camera) const {
-    service.edit(session, camera.seq, {protocol::CameraEdit{camera.view}});
+    service.edit(session, camera.seq, {protocol::CameraEdit{camera.view}}, "/edits/0/view");
   }
-  void operator()(const protocol::SetMessage& set) const { service.edit(session, set.seq, {set.edit}); }
-  void operator()(const protocol::Batch& batch) const { service.edit(session, batch.seq, batch.edits, true); }
+  void operator()(const protocol::SetMessage& set) const { service.edit(session, set.seq, {set.edit}, "/edits/0"); }
+  void operator()(const protocol::Batch& batch) const { service.edit(session, batch.seq, batch.edits, ""); }
   void operator()(const protocol::Pick& pick) const {
     service.ask(session, pick.seq, PickRequest{{session.id(), pick.seq}, pick.x, pick.y});
   }
@@ -167,7 +167,7 @@ void Service::addEdit(EditJob& job, const protocol::Edit& wire, View& view) {
   job.request.edits.push_back(editFromWire(wire, view));
 }
 
-void Service::edit(ClientSession& session, uint32_t seq, const std::vector<protocol::Edit>& edits, bool batch) {
+void Service::edit(ClientSession& session, uint32_t seq, const std::vector<protocol::Edit>& edits, std::string_view unsaid) {
   EditJob job{{{session.id(), seq}, {}, nowSeconds()}, {}};
   View view = m_view;
   bool moves = false;
@@ -178,7 +178,7 @@ void Service::edit(ClientSession& session, uint32_t seq, const std::vector<proto
       return sendError(session, seq,
                        error(protocol::kErrorOutOfRange,
                              "pictures have at most " + std::to_string(m_config.maxImageSide) + " pixels a side",
-                             placeIn(seq, (batch ? "/edits/" + std::to_string(whole.edits.size()) : std::string()) +
+                             placeIn(seq, (unsaid.empty() ? "/edits/" + std::to_string(whole.edits.size()) : std::string()) +
                                               (size->width > m_config.maxImageSide ? "/width" : "/height"))));
     addEdit(job, wire, view);
     const bool isView = std::holds_alternative<protocol::CameraEdit>(wire);
@@ -189,7 +189,7 @@ void Service::edit(ClientSession& session, uint32_t seq, const std::vector<proto
   if (!taken) return;
   rememberUnacknowledged({session.id(), seq}, std::move(whole));
   if (moves) noteMoved({session.id(), seq}, view);
-  if (batch) m_batches.emplace(session.id(), seq);
+  m_unsaid.emplace(std::pair(session.id(), seq), unsaid);
   session.lastEditSeq = seq;
   ++m_counters.edits;
 }

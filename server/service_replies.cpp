@@ -10,11 +10,10 @@ namespace {
 constexpr double kBroadcastSeconds = 0.25;   ///< between two scenes sent because somebody else edits
 constexpr ConnectionId kNobody = 0;
 
-/// The renderer's place, "/edits/N/field" of a request, as the place in the message that asked.
-std::string placeInMessage(std::string place, uint32_t seq, bool batch) {
-  const std::string only = "/edits/0";
+/// The renderer's place, "/edits/N/field" of a request, as the place in the message that asked, which has not what is `unsaid`.
+std::string placeInMessage(std::string place, uint32_t seq, std::string_view unsaid) {
   if (!place.starts_with("/edits/")) return place;
-  if (!batch && place.starts_with(only)) place.erase(0, only.size());
+  if (place.starts_with(unsaid)) place.erase(0, unsaid.size());
   return "seq " + std::to_string(seq) + (place.empty() ? "" : " ") + place;
 }
 
@@ -28,7 +27,7 @@ struct ReplyHandler {
 
   void operator()(const EditAck& ack) const {
     service.m_viewEdits.erase({ack.to.client, ack.to.seq});
-    service.m_batches.erase({ack.to.client, ack.to.seq});
+    service.m_unsaid.erase({ack.to.client, ack.to.seq});
     const bool effective = !ack.superseded && ack.cost != CostClass::none;
     if (effective) {
       service.m_editors.insert(ack.to.client);
@@ -44,7 +43,7 @@ struct ReplyHandler {
   }
   void operator()(const ErrorReply& reply) const {
     if (service.m_viewEdits.erase({reply.to.client, reply.to.seq}) > 0) service.m_viewDoubtful = true;
-    const bool batch = service.m_batches.erase({reply.to.client, reply.to.seq}) > 0;
+    const auto edit = service.m_unsaid.extract({reply.to.client, reply.to.seq});
     service.m_unacknowledged.erase({reply.to.client, reply.to.seq});
     if (reply.to.client == kNobody) return service.tellFailure(reply.error);
     if (!session) return service.noteRefused(reply);
@@ -52,7 +51,7 @@ struct ReplyHandler {
     doneReading(reply.to.seq);
     forgetEdit(reply.to.seq);
     Error error = reply.error;
-    error.place = placeInMessage(std::move(error.place), reply.to.seq, batch);
+    error.place = placeInMessage(std::move(error.place), reply.to.seq, edit ? edit.mapped() : std::string_view());
     service.sendError(*session, reply.to.seq, error);
   }
   void operator()(const DescribeReply& reply) const {

@@ -120,19 +120,19 @@ struct Validator {
 
   void operator()(const SetView& e) {
     const View& v = e.view;
-    check.place(v.eye, "eye");
-    check.place(v.target, "target");
-    check.require(finite(v.up) && glm::length(v.up) > 1e-12, "up", "up must be finite and not zero");
+    check.place(v.eye, "view/eye");
+    check.place(v.target, "view/target");
+    check.require(finite(v.up) && glm::length(v.up) > 1e-12, "view/up", "up must be finite and not zero");
     const glm::dvec3 axis = v.target - v.eye;
-    check.require(glm::length(axis) > 1e-12, "target", "target must not be the eye");
+    check.require(glm::length(axis) > 1e-12, "view/target", "target must not be the eye");
     const double sine = glm::length(glm::cross(axis, v.up)) / (glm::length(axis) * glm::length(v.up));
-    check.require(sine > 1e-6, "up", "up must not be parallel to the direction of view");
+    check.require(sine > 1e-6, "view/up", "up must not be parallel to the direction of view");
     if (v.lens.perspective) {
-      check.require(v.lens.yfov >= 1e-4f && v.lens.yfov < kPi - 1e-3f, "yfov", "yfov must be from 0.0001 to below pi");
+      check.require(v.lens.yfov >= 1e-4f && v.lens.yfov < kPi - 1e-3f, "view/yfov", "yfov must be from 0.0001 to below pi");
     } else {
-      check.require(std::isfinite(v.lens.ymag) && v.lens.ymag > 0.0f, "ymag", "ymag must be finite and above 0");
+      check.require(std::isfinite(v.lens.ymag) && v.lens.ymag > 0.0f, "view/ymag", "ymag must be finite and above 0");
     }
-    check.require(std::isfinite(v.lens.znear) && v.lens.znear >= 0.0f, "znear",
+    check.require(std::isfinite(v.lens.znear) && v.lens.znear >= 0.0f, "view/znear",
                   "znear must be finite and not negative");
   }
 

@@ -99,6 +99,22 @@ TEST_F(LimndMalformed, eachMessageIsAnsweredWithItsErrorAndTheSceneRendersOn) {
   expectTheSameScene();
 }
 
+/// The renderer knows edits only; where a field stood in the message depends on the message.
+TEST_F(LimndMalformed, theFieldOfACameraIsNamedAsInItsMessage) {
+  const std::string nowhere = R"("eye":[1,0,0],"target":[1,0,0],"up":[0,1,0])";
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {R"("op":"camera",)" + nowhere, "/target"},
+      {R"("op":"set","target":"camera","view":{)" + nowhere + "}", "/view/target"},
+      {R"("op":"batch","edits":[{"target":"resolve"},{"target":"camera","view":{)" + nowhere + "}}]", "/edits/1/view/target"}};
+  for (const auto& [message, place] : cases) {
+    const std::string seq = std::to_string(client.nextSeq());
+    client.sendWrong("{" + message + R"(,"seq":)" + seq + "}");
+    const auto error = client.await<protocol::ErrorMessage>();
+    EXPECT_EQ(error.code, "out-of-range");
+    EXPECT_EQ(error.place.value_or(""), "seq " + seq + " " + place);
+  }
+}
+
 TEST_F(LimndMalformed, eachFileIsAnsweredWithItsErrorAndTheSceneRendersOn) {
   const std::vector<BrokenFile> files = brokenFiles();
   ASSERT_GE(files.size(), 20u);

@@ -333,17 +333,17 @@ TEST(EditValidate, NodeRanges) {
 TEST(EditValidate, EnvironmentViewAndResolve) {
   EXPECT_EQ(complaint(SetEnvironment{.radiance = glm::vec3(-1)}), "radiance");
   EXPECT_EQ(complaint(SetEnvironment{.rotation = std::numeric_limits<float>::infinity()}), "rotation");
-  EXPECT_EQ(complaint(viewEdit({0, 0, 0}, {0, 0, 0})), "target");
-  EXPECT_EQ(complaint(viewEdit({0, 0, 1}, {0, 0, 0}, {0, 0, 2})), "up");
-  EXPECT_EQ(complaint(viewEdit({NAN, 0, 1}, {0, 0, 0})), "eye");
+  EXPECT_EQ(complaint(viewEdit({0, 0, 0}, {0, 0, 0})), "view/target");
+  EXPECT_EQ(complaint(viewEdit({0, 0, 1}, {0, 0, 0}, {0, 0, 2})), "view/up");
+  EXPECT_EQ(complaint(viewEdit({NAN, 0, 1}, {0, 0, 0})), "view/eye");
   EXPECT_EQ(complaint(viewEdit({0, 0, 1}, {0, 0, 0})), "");
   SetView lens = viewEdit({0, 0, 1}, {0, 0, 0});
   lens.view.lens.yfov = 3.2f;
-  EXPECT_EQ(complaint(lens), "yfov");
+  EXPECT_EQ(complaint(lens), "view/yfov");
   lens.view.lens.perspective = false;
   EXPECT_EQ(complaint(lens), "");
   lens.view.lens.ymag = 0.0f;
-  EXPECT_EQ(complaint(lens), "ymag");
+  EXPECT_EQ(complaint(lens), "view/ymag");
   EXPECT_EQ(complaint(SetResolve{.exposure = 100.0f}), "exposure");
   EXPECT_EQ(complaint(SetResolve{.toneMap = ToneMap(9)}), "toneMap");
   EXPECT_EQ(complaint(SetResolve{.view = ResolveView(8)}), "view");
