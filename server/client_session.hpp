@@ -11,9 +11,10 @@
 
 namespace limn::server {
 
-/// A wait for an estimated error; the renderer knows waits for steps only.
+/// A wait for an estimated error, and maybe for steps too; the renderer knows waits for steps only.
 struct ErrorWait {
   uint32_t seq = 0;
+  uint32_t steps = 1;
   float error = 0.0f;          ///< relMSE, for the upper end of its interval
   bool asked = false;          ///< the film's hash was asked for
 };

@@ -81,10 +81,10 @@ struct MessageHandler {
     service.ask(session, describe.seq, DescribeRequest{{session.id(), describe.seq}});
   }
   void operator()(const protocol::Wait& wait) const {
-    if (wait.error && !wait.steps) {
+    if (wait.error) {
       if (session.unanswered >= ClientSession::kMaxUnanswered)
         return service.sendError(session, wait.seq, error(protocol::kErrorBusy, "too many requests wait"));
-      session.errorWaits.push_back({wait.seq, *wait.error, false});
+      session.errorWaits.push_back({wait.seq, wait.steps.value_or(1), *wait.error, false});
       ++session.unanswered;
       service.tellWatched();
       if (const auto frame = service.m_frames.newest()) service.checkErrorWaits(session, frame->info);

@@ -190,7 +190,7 @@ void Service::checkErrorWaits(ClientSession& session, const FrameInfo& info) {
   if (applied < session.lastEditSeq) return;
   for (ErrorWait& wait : session.errorWaits) {
     const bool reached = info.errorHigh <= wait.error || info.phase == Phase::converged;
-    if (reached && !wait.asked) wait.asked = m_mailbox.push(WaitRequest{{session.id(), wait.seq}, 1});
+    if (reached && !wait.asked) wait.asked = m_mailbox.push(WaitRequest{{session.id(), wait.seq}, wait.steps});
   }
 }
 

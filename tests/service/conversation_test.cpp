@@ -210,6 +210,16 @@ TEST(Conversation, waitForAnErrorIsAnsweredOnceThePictureIsSoGood) {
   EXPECT_GE(waitFor(client, {}, 0.34f).steps, 3u);
 }
 
+TEST(Conversation, waitForStepsAndAnErrorIsAnsweredWhenBothAreReached) {
+  TestService server;
+  TestClient client(server.port());
+  client.greet();
+  sendRoughness(client, 0, 0.75f);
+  EXPECT_GE(waitFor(client, 1u, 0.67f).steps, 3u) << "steps come first";
+  sendRoughness(client, 0, 0.5f);
+  EXPECT_GE(waitFor(client, 3u, 2.0f).steps, 3u) << "the error comes first";
+}
+
 TEST(Conversation, waitForAnErrorIsAnsweredAlsoWhenNobodyWatches) {
   TestService server;
   TestClient client(server.port());

@@ -359,7 +359,7 @@ export interface Describe {
   seq: number;  /** rises from message to message of a client */
 }
 
-/** Answered by waited, once the film is so far. With neither field: at convergence. An edit meanwhile starts the count again. */
+/** Answered by waited, once the film is so far. With both fields: when both are reached; with neither: at convergence, which ends every wait. An edit meanwhile starts the count again. */
 export interface Wait {
   op: "wait";
   seq: number;  /** rises from message to message of a client */
