@@ -1,6 +1,6 @@
 #include "server/edit_summary.hpp"
 
-#include "renderer/base/check.hpp"
+#include "renderer/base/log.hpp"
 
 namespace limn::server {
 namespace {
@@ -9,11 +9,12 @@ using nlohmann::json;
 
 json jsonOf(const protocol::Edit& edit) { return json::parse(protocol::encode(protocol::Batch{1, {edit}}))["edits"][0]; }
 
-protocol::ClientMessage messageOf(const std::vector<json>& edits) {
+/// Adds the batch of the edits; passes over what the protocol cannot say, and tells it.
+void addBatch(std::vector<protocol::ClientMessage>& messages, const std::vector<json>& edits) {
   const json batch{{"op", "batch"}, {"seq", 1}, {"edits", edits}};
   Result<protocol::ClientMessage> message = protocol::decodeClient(batch.dump());
-  LIMN_CHECK(message.ok());
-  return message.take();
+  if (message) messages.push_back(message.take());
+  else logWarning("an edit cannot be kept: " + message.error().text() + " in " + batch.dump());
 }
 
 /// "material/3", "environment": what an edit is about.
@@ -59,13 +60,15 @@ void EditSummary::addTechnique(const json& edit) {
 std::vector<protocol::ClientMessage> EditSummary::messages() const {
   std::vector<protocol::ClientMessage> all;
   if (!m_scene.empty()) all.push_back(protocol::Load{1, m_scene});
-  for (const json& edit : m_techniques) all.push_back(messageOf({edit}));
   // A technique may need the size, and the size the technique: they come in one.
   const auto size = m_newest.find("image");
   const bool both = size != m_newest.end() && !m_techniques.empty();
-  if (both) all.back() = messageOf({size->second, m_techniques.back()});
+  for (const json& edit : m_techniques) {
+    if (both && &edit == &m_techniques.back()) addBatch(all, {size->second, edit});
+    else addBatch(all, {edit});
+  }
   for (const auto& [subject, edit] : m_newest)
-    if (!both || subject != "image") all.push_back(messageOf({edit}));
+    if (!both || subject != "image") addBatch(all, {edit});
   return all;
 }
 

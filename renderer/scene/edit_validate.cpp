@@ -128,7 +128,7 @@ struct Validator {
     const double sine = glm::length(glm::cross(axis, v.up)) / (glm::length(axis) * glm::length(v.up));
     check.require(sine > 1e-6, "view/up", "up must not be parallel to the direction of view");
     if (v.lens.perspective) {
-      check.require(v.lens.yfov >= 1e-4f && v.lens.yfov < kPi - 1e-3f, "view/yfov", "yfov must be from 0.0001 to below pi");
+      check.require(v.lens.yfov >= 1e-4f && v.lens.yfov <= kPi - 1e-3f, "view/yfov", "yfov must be from 0.0001 to below pi");
     } else {
       check.require(std::isfinite(v.lens.ymag) && v.lens.ymag > 0.0f, "view/ymag", "ymag must be finite and above 0");
     }

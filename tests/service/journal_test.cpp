@@ -87,6 +87,25 @@ TEST(EditSummary, keepsTheNewestOfEachThing) {
       << "and has nothing else of the one before";
 }
 
+TEST(EditSummary, keepsEveryLensThatAFileMayHave) {
+  for (const float yfov : {1e-4f, 3.1405926f, 3.1405928f})
+    for (const float metres : {1e-45f, 1e-12f, 1e30f}) {
+      protocol::CameraEdit edit;
+      edit.view.up = {0.0, 1.0, 0.0};
+      edit.view.yfov = yfov;
+      edit.view.ymag = edit.view.znear = metres;
+      const Messages edits{edited(edit)};
+      EXPECT_EQ(summaryOf(edits, 1), edits) << yfov << " rad, " << metres << " m";
+    }
+}
+
+TEST(EditSummary, passesOverWhatCannotBeSaid) {
+  protocol::CameraEdit edit;
+  edit.view.yfov = 4.0f;
+  const Messages edits{edited(edit), roughness(1, 0.5f)};
+  EXPECT_EQ(summaryOf(edits, 2), (Messages{edits[1]}));
+}
+
 TEST(EditSummary, aChangeOfTechniqueBeginsWithDefaults) {
   EditSummary summary;
   const Messages edits{technique({}, {{"maxBounces", 3.0}}), technique("point-projection", {{"bounces", 2.0}}),

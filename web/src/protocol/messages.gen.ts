@@ -684,9 +684,9 @@ const kStructs: { [name: string]: readonly Field[] } = {
     { name: "target", type: "f64[3]" },
     { name: "up", type: "f64[3]" },
     { name: "perspective", type: "bool", optional: true },
-    { name: "yfov", type: "f32", optional: true, min: 0.001, max: 3.1 },
-    { name: "ymag", type: "f32", optional: true, min: 1e-09, max: 1000000000.0 },
-    { name: "znear", type: "f32", optional: true, min: 0, max: 1000000000.0 },
+    { name: "yfov", type: "f32", optional: true, min: 0.0001, max: 3.1405928 },
+    { name: "ymag", type: "f32", optional: true, min: 1e-45, max: 3.4028235e+38 },
+    { name: "znear", type: "f32", optional: true, min: 0, max: 3.4028235e+38 },
   ],
   MaterialEdit: [
     { name: "material", type: "u32" },
