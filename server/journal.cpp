@@ -101,7 +101,7 @@ Result<void> Journal::lock() {
 }
 
 Result<void> Journal::openFile() {
-  if (m_fd >= 0) ::close(m_fd);
+  if (m_fd >= 0) ::close(std::exchange(m_fd, -1));
   m_fd = ::open(m_file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
   if (m_fd < 0) return ioError(m_file, "cannot be written");
   return {};
@@ -166,7 +166,19 @@ Result<void> Journal::append(std::span<const protocol::ClientMessage> messages) 
   }
   m_behind = false;
   m_bytes += lines.size();
-  return m_bytes > std::max(kWorthRewriting, kRewriteFactor * m_leastBytes) ? rewrite() : Result<void>();
+  if (m_bytes > std::max(kWorthRewriting, kRewriteFactor * m_leastBytes)) shorten();
+  return {};
+}
+
+Result<void> Journal::catchUp() { return m_behind ? rewrite() : Result<void>(); }
+
+// Where that fails the file says the same as before, and is left until it has grown once more.
+void Journal::shorten() {
+  const Result<void> written = rewrite();
+  if (written) return;
+  logWarning(written.error().text() + "; it stays as long as it is");
+  m_behind = m_fd < 0;
+  m_leastBytes = m_bytes;
 }
 
 Result<void> Journal::rewrite() {

@@ -24,8 +24,12 @@ class Journal {
 
   /// All that was accepted, by the fewest messages: maybe a `load`, then `batch`es.
   std::vector<protocol::ClientMessage> messages() const { return m_summary.messages(); }
-  /// `load`s and `batch`es. Errors: "io"; then the file holds none of them, and the next call tries again.
+  /// `load`s and `batch`es. Errors: "io"; then the file holds none of them, and catchUp() or the next call tries again.
   Result<void> append(std::span<const protocol::ClientMessage> messages);
+  /// Whether the file lacks something that was accepted.
+  bool behind() const { return m_behind; }
+  /// Writes what the file lacks. Errors: "io".
+  Result<void> catchUp();
   static constexpr uint32_t kMostStarts = 3;
   /// A process is about to take up what the journal holds. Where so many before did and none came to confirm(), that may be
   /// what ended them: it is set aside. Errors: "io".
@@ -44,6 +48,7 @@ class Journal {
   Result<void> openFile();
   Result<void> read();
   Result<void> rewrite();
+  void shorten();
   void writeStarts(uint32_t count);
 
   std::filesystem::path m_file;

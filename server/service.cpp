@@ -116,6 +116,7 @@ void Service::onTick() {
   }
   tellWatched();
   confirmJournal(now);
+  catchUp(now);
   distributeFrames();
   const bool leave =
       m_config.idleExitSeconds > 0.0 && m_sessions.empty() && now - m_aloneSince > m_config.idleExitSeconds;

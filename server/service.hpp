@@ -119,6 +119,8 @@ class Service : private TransportHandler {
   void noteSettled();
   void noteRefused(const ErrorReply& reply);
   void keepAccepted();
+  void catchUp(double now);
+  void noteKept(const Result<void>& kept);
   void confirmJournal(double now);
 
   // service_frames.cpp: pictures
@@ -153,6 +155,7 @@ class Service : private TransportHandler {
   std::map<std::pair<ConnectionId, uint32_t>, protocol::ClientMessage> m_unacknowledged;  ///< for the journal: the same
   std::vector<protocol::ClientMessage> m_accepted;          ///< since the journal was last written
   bool m_journalFails = false;             ///< and that was told
+  double m_triedToKeep = 0.0;              ///< [s]
   size_t m_takingUp = 0;                   ///< requests of the journal that were not answered yet
   uint32_t m_takenUp = 0;                  ///< seq of the last that was
   double m_settledAt = 0.0;                ///< [s] the last of them was answered, or the scene was there

@@ -11,6 +11,7 @@ namespace limn::server {
 namespace {
 
 constexpr ConnectionId kJournal = std::numeric_limits<ConnectionId>::max();  // whose edits those of a journal are
+constexpr double kRetrySeconds = 1.0;                                        // of a disk that was full
 constexpr size_t kMostRequests = Mailbox::kMaxPending / 2;
 
 /// Edits that go together. The image of a sky is there when it is read: what else an edit says of the sky must not come so late, over
@@ -96,8 +97,17 @@ void Service::confirmJournal(double now) {
 void Service::keepAccepted() {
   if (m_accepted.empty()) return;
   if (m_takingUp == 0) m_config.journal->confirm();
-  const Result<void> kept = m_config.journal->append(m_accepted);
+  noteKept(m_config.journal->append(m_accepted));
   m_accepted.clear();
+}
+
+void Service::catchUp(double now) {
+  if (!m_ready || !m_config.journal || !m_config.journal->behind() || now - m_triedToKeep < kRetrySeconds) return;
+  noteKept(m_config.journal->catchUp());
+}
+
+void Service::noteKept(const Result<void>& kept) {
+  m_triedToKeep = nowSeconds();
   if (!kept && !m_journalFails) logWarning(kept.error().text() + "; edits go on, and what is accepted will be kept when it can be");
   m_journalFails = !kept;
 }

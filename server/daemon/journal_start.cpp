@@ -43,6 +43,7 @@ void JournalStart::ended(const Result<void>& outcome, bool begun) {
   if (!m_journal) return;
   const bool before = !begun && !m_loaded;  // that the given scene cannot be begun with is not the edits' fault
   if (outcome || before) m_journal->confirm();
+  if (const Result<void> kept = m_journal->catchUp(); !kept) logWarning("accepted edits end with the process: " + kept.error().text());
 }
 
 Result<void> JournalStart::setAside(const std::string& why) {

@@ -2,6 +2,7 @@
 #include "server/journal.hpp"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <fstream>
@@ -191,26 +192,72 @@ TEST(Journal, staysSmallWhateverIsDragged) {
   EXPECT_EQ(opened(file)->messages(), (Messages{view(19999), roughness(3, 0.5f)}));
 }
 
+/// No file of the process grows beyond so many bytes, as if the disk were full.
+class FullDisk {
+ public:
+  explicit FullDisk(uint64_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &m_before);
+    const rlimit full{rlim_t(bytes), m_before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &full);
+  }
+  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &m_before); }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit m_before{};
+};
+
 TEST(Journal, aFullDiskLosesNothingThatFitsLater) {
   const test::ScratchDirectory scratch;
   const std::string file = scratch.file("room.edits");
-  std::signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
+  const Messages edits{roughness(0, 0.25f), roughness(1, 0.5f), roughness(2, 0.75f), roughness(3, 1.0f)};
   {
     const auto journal = opened(file);
-    append(*journal, {roughness(0, 0.25f)});
-    const rlimit full{rlim_t(journal->bytes() + 20), before.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &full);
-    const Messages one{roughness(1, 0.5f)}, two{roughness(2, 0.75f)};
-    const Result<void> first = journal->append(one), second = journal->append(two);
-    setrlimit(RLIMIT_FSIZE, &before);
-    ASSERT_FALSE(first.ok());
-    EXPECT_EQ(first.error().code, "io");
-    EXPECT_FALSE(second.ok());
-    append(*journal, {roughness(3, 1.0f)});
+    append(*journal, {edits[0]});
+    for (size_t i : {1u, 2u}) {
+      const FullDisk full(journal->bytes() + 20);
+      const Result<void> refused = journal->append(std::span(&edits[i], 1));
+      ASSERT_FALSE(refused.ok());
+      EXPECT_EQ(refused.error().code, "io");
+      EXPECT_TRUE(journal->behind());
+    }
+    append(*journal, {edits[3]});
+    EXPECT_FALSE(journal->behind());
   }
-  EXPECT_EQ(opened(file)->messages(), (Messages{roughness(0, 0.25f), roughness(1, 0.5f), roughness(2, 0.75f), roughness(3, 1.0f)}));
+  EXPECT_EQ(opened(file)->messages(), edits);
+}
+
+TEST(Journal, catchesUpWithoutAnotherEdit) {
+  const test::ScratchDirectory scratch;
+  const std::string file = scratch.file("room.edits");
+  const Messages edits{roughness(0, 0.25f), roughness(1, 0.5f)};
+  {
+    const auto journal = opened(file);
+    append(*journal, {edits[0]});
+    {
+      const FullDisk full(journal->bytes() + 20);
+      EXPECT_FALSE(journal->append(std::span(&edits[1], 1)).ok());
+      EXPECT_FALSE(journal->catchUp().ok());
+    }
+    EXPECT_TRUE(journal->catchUp().ok());
+    EXPECT_FALSE(journal->behind());
+  }
+  EXPECT_EQ(opened(file)->messages(), edits);
+}
+
+TEST(Journal, thatCannotBeShortenedStaysLong) {
+  const test::ScratchDirectory scratch;
+  const std::string file = scratch.file("room.edits");
+  {
+    const auto journal = opened(file);
+    fs::create_directory(file + ".tmp." + std::to_string(getpid()));   // where a shorter one would be made
+    for (int i = 0; i < 4000; ++i) append(*journal, {view(i)});
+    EXPECT_GT(journal->bytes(), size_t(1) << 18);
+    EXPECT_FALSE(journal->behind());
+  }
+  EXPECT_EQ(opened(file)->messages(), (Messages{view(3999)}));
 }
 
 TEST(Journal, refusesWhatIsNoneOrInUse) {

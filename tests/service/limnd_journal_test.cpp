@@ -1,7 +1,10 @@
 // The plug is pulled at any moment: what was acknowledged is there again.
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <csignal>
 
+#include "renderer/base/clock.hpp"
 #include "tests/service/cli/run_program.hpp"
 #include "tests/service/daemon_fixture.hpp"
 
@@ -49,6 +52,21 @@ std::string changingScenes(const test::ScratchDirectory& scratch) {
   fs::copy_file(kScene, scenes + "/cornell-box.glb");
   fs::copy_file(kScenes + "/cornell-glossy.glb", scenes + "/loaded.glb");
   return scenes;
+}
+
+/// The file that is being kept in the directory.
+std::string journalIn(const test::ScratchDirectory& scratch) {
+  for (const auto& entry : fs::directory_iterator(scratch.file("journal")))
+    if (entry.path().extension() == ".edits") return test::readText(entry.path());
+  return "";
+}
+
+/// No file of the daemon may grow beyond so many bytes, as if the disk were full; nothing: any may.
+void limitFiles(const Daemon& daemon, std::optional<rlim_t> bytes) {
+  rlimit limit{};
+  ASSERT_EQ(prlimit(daemon.process.pid(), RLIMIT_FSIZE, nullptr, &limit), 0);
+  limit.rlim_cur = bytes.value_or(limit.rlim_max);
+  ASSERT_EQ(prlimit(daemon.process.pid(), RLIMIT_FSIZE, &limit, nullptr), 0);
 }
 
 /// What was set aside of the only journal in the directory.
@@ -147,6 +165,20 @@ TEST(LimndJournal, theSceneThatWasLoadedLastComesBack) {
   EXPECT_EQ(scene.hash, hash);
   EXPECT_EQ(scene.technique, "point-projection");
   EXPECT_EQ(scene.width, 80u);
+}
+
+TEST(LimndJournal, whatAFullDiskKeptOutIsWrittenOnceThereIsRoom) {
+  const test::ScratchDirectory scratch;
+  std::signal(SIGXFSZ, SIG_IGN);       // the daemon inherits it
+  Kept kept(scratch);
+  const auto written = [&] { return journalIn(scratch).find("0.625") != std::string::npos; };
+  limitFiles(kept.daemon, 20);
+  edit(kept.client, 1, 0.625f);
+  EXPECT_FALSE(written());
+  limitFiles(kept.daemon, std::nullopt);
+  const double end = nowSeconds() + RawClient::kPatience;
+  while (!written() && nowSeconds() < end) describe(kept.client);
+  EXPECT_TRUE(written()) << "nobody edits any more";
 }
 
 TEST(LimndJournal, aLoadedSceneThatIsSpoiltKeepsNoDaemonFromStarting) {
