@@ -1,5 +1,6 @@
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,16 +16,19 @@ class EditSummary {
   /// A `load` forgets what was edited of the scene before it; edits of `batch` are added in their order; other messages are
   /// nothing.
   void add(const protocol::ClientMessage& message);
+  /// Forgets what a renderer refused of an edit that messages() held: the field that `place` names, "/roughness" or
+  /// "/parameters/bounces", or all that was edited there where nothing of use would be left. False where nothing of it is known.
+  bool forget(const protocol::Edit& edit, const std::string& place);
+  /// The newest value of what an edit is about; nothing where it was forgotten.
+  std::optional<protocol::Edit> newest(const protocol::Edit& edit) const;
   /// Few messages that say the same: maybe a `load`, then a `batch` for each thing that was edited.
   std::vector<protocol::ClientMessage> messages() const;
 
  private:
   void addEdit(const protocol::Edit& edit);
-  void addTechnique(const nlohmann::json& edit);
 
   std::string m_scene;                               ///< uri of the last `load`; empty: none
-  std::map<std::string, nlohmann::json> m_newest;    ///< edits by what they are about
-  std::vector<nlohmann::json> m_techniques;          ///< in their order; at most one without a name, and the newest with one
+  std::map<std::string, nlohmann::json> m_newest;    ///< edits by what they are about; at most one technique has a name
 };
 
 }  // namespace limn::server

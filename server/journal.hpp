@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,9 +27,12 @@ class Journal {
   std::vector<protocol::ClientMessage> messages() const { return m_summary.messages(); }
   /// `load`s and `batch`es. Errors: "io"; then the file holds none of them, and catchUp() or the next call tries again.
   Result<void> append(std::span<const protocol::ClientMessage> messages);
-  /// Whether the file lacks something that was accepted.
+  /// As EditSummary::forget(); catchUp() writes it.
+  void forget(const protocol::Edit& edit, const std::string& place) { m_behind |= m_summary.forget(edit, place); }
+  std::optional<protocol::Edit> newest(const protocol::Edit& edit) const { return m_summary.newest(edit); }
+  /// Whether the file lacks something that was accepted, or holds something that was forgotten.
   bool behind() const { return m_behind; }
-  /// Writes what the file lacks. Errors: "io".
+  /// Writes the file as it should be. Errors: "io".
   Result<void> catchUp();
   static constexpr uint32_t kMostStarts = 3;
   /// A process is about to take up what the journal holds. Where so many before did and none came to confirm(), that may be
@@ -56,7 +60,7 @@ class Journal {
   uint64_t m_bytes = 0;                ///< of whole lines in the file
   uint64_t m_leastBytes = 0;           ///< that said the same when this was looked at last
   EditSummary m_summary;               ///< of all that was accepted, written or not
-  bool m_behind = false;               ///< the file lacks something that was accepted
+  bool m_behind = false;               ///< the file does not say what m_summary says
   bool m_confirmed = false;
 };
 

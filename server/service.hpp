@@ -113,10 +113,11 @@ class Service : private TransportHandler {
 
   // service_journal.cpp: what outlives the process
   void takeUp(const std::vector<protocol::ClientMessage>& messages);
+  void askForKept(uint32_t seq, std::vector<protocol::Edit> edits);
   void rememberUnacknowledged(const Origin& from, protocol::ClientMessage message);
-  void noteAccepted(const Origin& from);
+  void noteAccepted(const Origin& from, const std::string& techniqueBefore = {});
   void noteTakenUp(const Origin& from);
-  void noteSettled();
+  std::vector<protocol::Edit> noteSettled(const Origin& from);
   void noteRefused(const ErrorReply& reply);
   void keepAccepted();
   void catchUp(double now);
@@ -156,7 +157,7 @@ class Service : private TransportHandler {
   std::vector<protocol::ClientMessage> m_accepted;          ///< since the journal was last written
   bool m_journalFails = false;             ///< and that was told
   double m_triedToKeep = 0.0;              ///< [s]
-  size_t m_takingUp = 0;                   ///< requests of the journal that were not answered yet
+  std::map<uint32_t, std::vector<protocol::Edit>> m_takingUp;  ///< requests of the journal that were not answered yet, by seq
   uint32_t m_takenUp = 0;                  ///< seq of the last that was
   double m_settledAt = 0.0;                ///< [s] the last of them was answered, or the scene was there
   std::set<ConnectionId> m_editors;        ///< edited since the others were last told; some may have left

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -28,6 +29,27 @@ bool holdsView(const std::vector<Edit>& edits) {
   return std::any_of(edits.begin(), edits.end(), [](const Edit& edit) { return std::holds_alternative<SetView>(edit); });
 }
 
+/// A technique's parameters say whose they are. `inUse`: the technique before.
+void nameTechniques(protocol::Batch& batch, std::string inUse) {
+  for (protocol::Edit& edit : batch.edits) {
+    auto* technique = std::get_if<protocol::TechniqueEdit>(&edit);
+    if (technique && technique->technique) inUse = *technique->technique;
+    else if (technique && !inUse.empty()) technique->technique = inUse;
+  }
+}
+
+/// What the renderer refused of a request, "/edits/N/field".
+struct KeptPlace {
+  size_t edit = SIZE_MAX;              ///< of the request; SIZE_MAX: none of them is to blame
+  std::string field;                   ///< "/field", maybe empty
+};
+KeptPlace keptPlaceOf(const Error& error) {
+  const std::string edits = "/edits/";
+  if (!error.place.starts_with(edits) || error.code == "io" || error.code == "path") return {};
+  const size_t field = std::min(error.place.find('/', edits.size()), error.place.size());
+  return {std::strtoull(error.place.c_str() + edits.size(), nullptr, 10), error.place.substr(field)};
+}
+
 }  // namespace
 
 void Service::begin(const View& view, const std::vector<protocol::ClientMessage>& kept) {
@@ -44,49 +66,67 @@ void Service::takeUp(const std::vector<protocol::ClientMessage>& messages) {
   // mailbox holds, a few share one.
   const size_t shared = groups.size() / kMostRequests + 1;
   for (size_t first = 0; first < groups.size(); first += shared) {
-    EditJob job{{{kJournal, uint32_t(first) + 1}, {}, nowSeconds()}, {}};
-    View view = m_view;
+    std::vector<protocol::Edit> edits;
     for (size_t i = first; i < std::min(groups.size(), first + shared); ++i)
-      for (const protocol::Edit& edit : groups[i]) addEdit(job, edit, view);
-    const Origin from = job.request.from;
-    const bool moves = holdsView(job.request.edits);
-    const bool taken = job.images.empty() ? m_mailbox.push(std::move(job.request)) : m_loader->request(std::move(job));
-    if (taken) ++m_takingUp;
-    else logWarning("an edit of the journal is not taken up: too many wait");
-    if (taken && moves) noteMoved(from, view);
+      edits.insert(edits.end(), groups[i].begin(), groups[i].end());
+    askForKept(uint32_t(first) + 1, std::move(edits));
   }
   if (!groups.empty()) logInfo("edits of the journal are taken up: " + std::to_string(groups.size()));
+}
+
+void Service::askForKept(uint32_t seq, std::vector<protocol::Edit> edits) {
+  const Origin from{kJournal, seq};
+  EditJob job{{from, {}, nowSeconds()}, {}};
+  View view = m_view;
+  for (const protocol::Edit& edit : edits) addEdit(job, edit, view);
+  const bool moves = holdsView(job.request.edits);
+  const bool taken = job.images.empty() ? m_mailbox.push(std::move(job.request)) : m_loader->request(std::move(job));
+  if (!taken) return logWarning("an edit of the journal is not taken up: too many wait");
+  m_takingUp.emplace(seq, std::move(edits));
+  if (moves) noteMoved(from, view);
 }
 
 void Service::rememberUnacknowledged(const Origin& from, protocol::ClientMessage message) {
   if (m_config.journal) m_unacknowledged.emplace(std::pair(from.client, from.seq), std::move(message));
 }
 
-void Service::noteAccepted(const Origin& from) {
+void Service::noteAccepted(const Origin& from, const std::string& techniqueBefore) {
   auto accepted = m_unacknowledged.extract({from.client, from.seq});
-  if (accepted) m_accepted.push_back(std::move(accepted.mapped()));
+  if (!accepted) return;
+  if (auto* batch = std::get_if<protocol::Batch>(&accepted.mapped())) nameTechniques(*batch, techniqueBefore);
+  m_accepted.push_back(std::move(accepted.mapped()));
 }
 
 void Service::noteTakenUp(const Origin& from) {
   if (from.client != kJournal) return;
-  noteSettled();
+  noteSettled(from);
   m_takenUp = std::max(m_takenUp, from.seq);
 }
 
-void Service::noteSettled() {
-  --m_takingUp;
+std::vector<protocol::Edit> Service::noteSettled(const Origin& from) {
+  auto asked = m_takingUp.extract(from.seq);
   m_settledAt = nowSeconds();
+  return asked ? std::move(asked.mapped()) : std::vector<protocol::Edit>();
 }
 
+// What does not fit any more is forgotten, and the others that came with it are asked for again, as they are by now. A file that is
+// not there may be there again at the next start.
 void Service::noteRefused(const ErrorReply& reply) {
   if (reply.to.client != kJournal) return;
-  noteSettled();
   logWarning("an edit of the journal does not fit any more: " + reply.error.text());
+  const std::vector<protocol::Edit> asked = noteSettled(reply.to);
+  const KeptPlace place = keptPlaceOf(reply.error);
+  if (!m_config.journal || place.edit >= asked.size()) return;
+  m_config.journal->forget(asked[place.edit], place.field);
+  std::vector<protocol::Edit> others;
+  for (const protocol::Edit& edit : asked)
+    if (const std::optional<protocol::Edit> newest = m_config.journal->newest(edit)) others.push_back(*newest);
+  if (!others.empty()) askForKept(reply.to.seq, std::move(others));
 }
 
 // A picture of all that the journal holds was made, or a while has passed in which nobody wanted one.
 void Service::confirmJournal(double now) {
-  if (!m_config.journal || !m_ready || m_takingUp > 0) return;
+  if (!m_config.journal || !m_ready || !m_takingUp.empty()) return;
   const std::shared_ptr<const Frame> newest = m_frames.newest();
   const auto shows = [&](const Origin& applied) { return applied.client == kJournal && applied.seq >= m_takenUp; };
   const bool shown = newest && (m_takenUp == 0 || std::any_of(newest->info.applied.begin(), newest->info.applied.end(), shows));
@@ -96,7 +136,7 @@ void Service::confirmJournal(double now) {
 // Before any acknowledgement leaves: these are only queued while replies are routed.
 void Service::keepAccepted() {
   if (m_accepted.empty()) return;
-  if (m_takingUp == 0) m_config.journal->confirm();
+  if (m_takingUp.empty()) m_config.journal->confirm();
   noteKept(m_config.journal->append(m_accepted));
   m_accepted.clear();
 }

@@ -31,7 +31,7 @@ struct ReplyHandler {
     const bool effective = !ack.superseded && ack.cost != CostClass::none;
     if (effective) {
       service.m_editors.insert(ack.to.client);
-      service.noteAccepted(ack.to);
+      service.noteAccepted(ack.to, ack.technique);
     } else {
       service.m_unacknowledged.erase({ack.to.client, ack.to.seq});
     }

@@ -48,6 +48,7 @@ struct EditAck {
   CostClass cost = CostClass::none;
   uint32_t sceneRevision = 0, viewRevision = 0;
   bool superseded = false;             ///< a later camera edit took its place before it was applied
+  std::string technique = {};          ///< that was in use when the edit came
 };
 struct ErrorReply { Origin to; Error error; };
 

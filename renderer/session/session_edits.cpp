@@ -140,6 +140,7 @@ Result<void> Session::Impl::handle(EditRequest& request) {
       replies.push(ErrorReply{request.from, answer});
       return {};
     }
+  const std::string before = technique->info().name;
   const Result<SetupOutcome> setUp = applySetup(request);
   if (!setUp) return setUp.error();
   if (setUp->refusal) {
@@ -153,7 +154,7 @@ Result<void> Session::Impl::handle(EditRequest& request) {
   acknowledge(request.from, request.receivedAt);
   ++status.editsApplied;
   unite(pending, changes);
-  replies.push(EditAck{request.from, plan.cost, sceneRevision, viewRevision, false});
+  replies.push(EditAck{request.from, plan.cost, sceneRevision, viewRevision, false, before});
   return {};
 }
 

@@ -87,7 +87,7 @@ void FakeRenderer::run() {
 
 void FakeRenderer::handle(const Request& request) {
   if (const auto* edit = std::get_if<EditRequest>(&request)) {
-    EditAck ack{edit->from, CostClass::relight, 0, 0, false};
+    EditAck ack{edit->from, CostClass::relight, 0, 0, false, m_scene.technique};
     for (size_t i = 0; i < edit->edits.size(); ++i) {
       const Edit& one = edit->edits[i];
       const auto* material = std::get_if<SetMaterial>(&one);

@@ -117,6 +117,29 @@ TEST(EditSummary, aChangeOfTechniqueBeginsWithDefaults) {
   EXPECT_EQ(summary.messages(), (Messages{edits[3]})) << "nothing is left of the technique before";
 }
 
+TEST(EditSummary, forgetsWhatIsRefusedAndNoMore) {
+  EditSummary summary;
+  protocol::MaterialEdit material;
+  material.material = 2;
+  material.roughness = material.metallic = 0.5f;
+  protocol::CameraEdit camera;
+  camera.view.up = {0.0, 1.0, 0.0};
+  const protocol::TechniqueEdit chosen{"path-tracing", {{{"gone", 1.0}, {"bounces", 2.0}}}};
+  for (const protocol::Edit& edit : {protocol::Edit(material), protocol::Edit(camera), protocol::Edit(chosen), protocol::Edit(protocol::ImageEdit{640, 480})})
+    summary.add(edited(edit));
+  EXPECT_TRUE(summary.forget(chosen, "/parameters/gone"));
+  EXPECT_TRUE(summary.forget(material, "/roughness"));
+  EXPECT_TRUE(summary.forget(camera, "/view/target")) << "half a view is none";
+  material.roughness = std::nullopt;
+  EXPECT_EQ(summary.messages(),
+            (Messages{protocol::Batch{1, {protocol::ImageEdit{640, 480}, protocol::TechniqueEdit{"path-tracing", {{{"bounces", 2.0}}}}}},
+                      edited(material)}));
+  EXPECT_TRUE(summary.forget(chosen, "/technique")) << "its parameters are nobody else's";
+  EXPECT_TRUE(summary.forget(material, "/material"));
+  EXPECT_EQ(summary.messages(), (Messages{edited(protocol::ImageEdit{640, 480})}));
+  EXPECT_FALSE(summary.forget(material, "/metallic"));
+}
+
 TEST(EditSummary, aSizeComesWithItsTechnique) {
   EditSummary summary;
   const protocol::ImageEdit size{640, 480};

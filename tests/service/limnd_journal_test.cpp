@@ -102,6 +102,8 @@ TEST(LimndJournal, everythingAcknowledgedOutlivesTheProcess) {
     client.awaitReply<protocol::Ack>(seq);
     endAfter(client, 8);
     before = describe(client);
+    EXPECT_NE(journalIn(scratch).find(R"("technique":"path-tracing","parameters":{"maxSamples":8})"), std::string::npos)
+        << "whose parameter it is";
     kill(kept.daemon);
   }
   Kept kept(scratch);
@@ -165,6 +167,33 @@ TEST(LimndJournal, theSceneThatWasLoadedLastComesBack) {
   EXPECT_EQ(scene.hash, hash);
   EXPECT_EQ(scene.technique, "point-projection");
   EXPECT_EQ(scene.width, 80u);
+}
+
+/// As after an update of the program: a parameter that it accepted is none any more.
+TEST(LimndJournal, aParameterThatIsGoneTakesNothingElseAlong) {
+  const test::ScratchDirectory scratch;
+  {
+    const auto journal = Journal::open(journalFileFor(scratch.file(""), kScene).take()).take();
+    const Result<void> kept = journal->append(std::vector<protocol::ClientMessage>{
+        protocol::Batch{1, {protocol::ImageEdit{80, 48}}},
+        protocol::Batch{1, {protocol::TechniqueEdit{"path-tracing", {{{"gone", 1.0}, {"maxSamples", 8.0}}}}}}});
+    ASSERT_TRUE(kept.ok());
+  }
+  for (const bool again : {false, true}) {
+    Daemon daemon({"--asset-root", kScenes, "--journal", scratch.file("")});
+    TestClient client(daemon.port);
+    client.greet(false);
+    const auto asHoped = [](const protocol::SceneMessage& scene) {
+      const auto isSet = [](const auto& parameter) { return parameter.first == "maxSamples" && parameter.second == 8.0; };
+      return scene.width == 80 && std::any_of(scene.parameters.begin(), scene.parameters.end(), isSet);
+    };
+    auto scene = describe(client);
+    for (const double end = nowSeconds() + RawClient::kPatience; !asHoped(scene) && nowSeconds() < end;) scene = describe(client);
+    EXPECT_TRUE(asHoped(scene));
+    daemon.process.signal(SIGTERM);
+    EXPECT_EQ(daemon.process.wait(), 0);
+    EXPECT_EQ(daemon.process.errors().find("does not fit any more") == std::string::npos, again) << daemon.process.errors();
+  }
 }
 
 TEST(LimndJournal, whatAFullDiskKeptOutIsWrittenOnceThereIsRoom) {
