@@ -14,9 +14,9 @@ Result<protocol::ClientMessage> batchOf(const std::vector<json>& edits) {
 }
 
 /// Adds the batch of the edits; passes over what the protocol cannot say, and tells it.
-void addBatch(std::vector<protocol::ClientMessage>& messages, const std::vector<json>& edits) {
+void addBatch(std::vector<Accepted>& messages, const std::vector<json>& edits) {
   Result<protocol::ClientMessage> message = batchOf(edits);
-  if (message) messages.push_back(message.take());
+  if (message) messages.push_back({message.take()});
   else logWarning("an edit cannot be kept: " + message.error().text() + " in " + json(edits).dump());
 }
 
@@ -45,12 +45,12 @@ std::optional<json> without(json edit, const std::string& place) {
 
 }  // namespace
 
-void EditSummary::add(const protocol::ClientMessage& message) {
-  if (const auto* load = std::get_if<protocol::Load>(&message)) {
-    m_scene = load->uri;
+void EditSummary::add(const Accepted& accepted) {
+  if (const auto* load = std::get_if<protocol::Load>(&accepted.message)) {
+    m_load = Accepted{protocol::Load{1, load->uri}, accepted.contents};
     std::erase_if(m_newest, [](const auto& entry) { return isOfTheScene(entry.first); });
   }
-  if (const auto* batch = std::get_if<protocol::Batch>(&message))
+  if (const auto* batch = std::get_if<protocol::Batch>(&accepted.message))
     for (const protocol::Edit& edit : batch->edits) addEdit(edit);
 }
 
@@ -82,9 +82,9 @@ std::optional<protocol::Edit> EditSummary::newest(const protocol::Edit& edit) co
   return message ? std::optional(std::get<protocol::Batch>(*message).edits[0]) : std::nullopt;
 }
 
-std::vector<protocol::ClientMessage> EditSummary::messages() const {
-  std::vector<protocol::ClientMessage> all;
-  if (!m_scene.empty()) all.push_back(protocol::Load{1, m_scene});
+std::vector<Accepted> EditSummary::all() const {
+  std::vector<Accepted> all;
+  if (m_load) all.push_back(*m_load);
   // A technique may need the size, and the size the technique: they come in one.
   const auto size = m_newest.find("image");
   const auto inUse = m_newest.empty() || !isTechnique(m_newest.rbegin()->first) ? m_newest.end() : std::prev(m_newest.end());

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "protocol/messages.gen.hpp"
+#include "server/journal_lines.hpp"
 
 namespace limn::server {
 
@@ -15,19 +15,20 @@ class EditSummary {
  public:
   /// A `load` forgets what was edited of the scene before it; edits of `batch` are added in their order; other messages are
   /// nothing.
-  void add(const protocol::ClientMessage& message);
-  /// Forgets what a renderer refused of an edit that messages() held: the field that `place` names, "/roughness" or
+  void add(const Accepted& accepted);
+  /// Forgets what a renderer refused of an edit that all() held: the field that `place` names, "/roughness" or
   /// "/parameters/bounces", or all that was edited there where nothing of use would be left. False where nothing of it is known.
   bool forget(const protocol::Edit& edit, const std::string& place);
   /// The newest value of what an edit is about; nothing where it was forgotten.
   std::optional<protocol::Edit> newest(const protocol::Edit& edit) const;
   /// Few messages that say the same: maybe a `load`, then a `batch` for each thing that was edited.
-  std::vector<protocol::ClientMessage> messages() const;
+  std::vector<Accepted> all() const;
+  const std::optional<Accepted>& load() const { return m_load; }   ///< the last
 
  private:
   void addEdit(const protocol::Edit& edit);
 
-  std::string m_scene;                               ///< uri of the last `load`; empty: none
+  std::optional<Accepted> m_load;                    ///< the last
   std::map<std::string, nlohmann::json> m_newest;    ///< edits by what they are about; at most one technique has a name
 };
 

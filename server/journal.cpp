@@ -12,7 +12,6 @@
 #include <fstream>
 #include <utility>
 
-#include "protocol/frame.hpp"
 #include "renderer/base/hash.hpp"
 #include "renderer/base/log.hpp"
 #include "renderer/base/file_bytes.hpp"
@@ -24,41 +23,23 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kTitle = "limn-journal 1\n";
-constexpr size_t kSumDigits = 8;
 constexpr uint64_t kMostBytes = 1u << 28;       // what is read at all
 constexpr uint64_t kWorthRewriting = 1u << 18;  // a file under this is left as it is
 constexpr uint64_t kRewriteFactor = 8;          // over what its messages would take
 
 std::span<const uint8_t> bytesOf(std::string_view text) { return {reinterpret_cast<const uint8_t*>(text.data()), text.size()}; }
 
-std::string sumOf(std::string_view json) {
-  char digits[kSumDigits + 1];
-  std::snprintf(digits, sizeof digits, "%08x", protocol::crc32c(bytesOf(json)));
-  return digits;
-}
-
-std::string lineOf(const protocol::ClientMessage& message) {
-  const std::string json = protocol::encode(message);
-  return sumOf(json) + " " + json + "\n";
-}
-
-std::string linesOf(std::span<const protocol::ClientMessage> messages) {
+std::string linesOf(std::span<const Accepted> messages) {
   std::string lines;
-  for (const protocol::ClientMessage& message : messages) lines += lineOf(message);
+  for (const Accepted& accepted : messages) lines += lineOf(accepted);
   return lines;
 }
 
-/// Whether a line, without its end, is neither torn nor wrong.
-bool isWhole(std::string_view line) {
-  if (line.size() <= kSumDigits || line[kSumDigits] != ' ') return false;
-  return sumOf(line.substr(kSumDigits + 1)) == line.substr(0, kSumDigits);
-}
-
 /// Whether a power cut may take them: where somebody looks from is found again at once.
-bool areViews(std::span<const protocol::ClientMessage> messages) {
+bool areViews(std::span<const Accepted> messages) {
   const auto isView = [](const protocol::Edit& edit) { return std::holds_alternative<protocol::CameraEdit>(edit); };
-  return std::all_of(messages.begin(), messages.end(), [&](const protocol::ClientMessage& message) {
-    const auto* batch = std::get_if<protocol::Batch>(&message);
+  return std::all_of(messages.begin(), messages.end(), [&](const Accepted& accepted) {
+    const auto* batch = std::get_if<protocol::Batch>(&accepted.message);
     return batch && std::all_of(batch->edits.begin(), batch->edits.end(), isView);
   });
 }
@@ -117,21 +98,27 @@ Result<void> Journal::read() {
   for (size_t end; (end = text.find('\n', at)) != text.npos; at = end + 1) {
     const std::string_view line = text.substr(at, end - at);
     if (!isWhole(line)) break;
-    const Result<protocol::ClientMessage> message = protocol::decodeClient(line.substr(kSumDigits + 1));
-    if (message) m_summary.add(*message);
-    else logWarning(m_file.string() + ": an edit of another version is passed over: " + message.error().text());
+    const Result<Accepted> accepted = acceptedOf(line);
+    if (accepted) m_summary.add(*accepted);
+    else logWarning(m_file.string() + ": an edit of another version is passed over: " + accepted.error().text());
   }
   if (at < text.size())
     logWarning(m_file.string() + ": " + std::to_string(text.size() - at) + " bytes at the end are torn and cut off");
   if (ftruncate(m_fd, off_t(at)) != 0) return ioError(m_file, "cannot be written");
   m_bytes = at;
-  m_leastBytes = linesOf(m_summary.messages()).size();
+  m_leastBytes = linesOf(m_summary.all()).size();
   return {};
+}
+
+std::vector<protocol::ClientMessage> Journal::messages() const {
+  std::vector<protocol::ClientMessage> messages;
+  for (Accepted& accepted : m_summary.all()) messages.push_back(std::move(accepted.message));
+  return messages;
 }
 
 // The lock file says how often.
 Result<void> Journal::begin() {
-  if (messages().empty()) return {};
+  if (m_summary.all().empty()) return {};
   m_confirmed = false;
   char text[16] = {};
   (void)!pread(m_lock, text, sizeof text - 1, 0);
@@ -154,8 +141,8 @@ void Journal::confirm() {
   if (!std::exchange(m_confirmed, true)) writeStarts(0);
 }
 
-Result<void> Journal::append(std::span<const protocol::ClientMessage> messages) {
-  for (const protocol::ClientMessage& message : messages) m_summary.add(message);
+Result<void> Journal::append(std::span<const Accepted> messages) {
+  for (const Accepted& accepted : messages) m_summary.add(accepted);
   if (m_behind) return rewrite();
   const std::string lines = linesOf(messages);
   m_behind = true;
@@ -182,7 +169,7 @@ void Journal::shorten() {
 }
 
 Result<void> Journal::rewrite() {
-  const std::string text = std::string(kTitle) + linesOf(m_summary.messages());
+  const std::string text = std::string(kTitle) + linesOf(m_summary.all());
   m_behind = true;
   if (Result<void> written = writeFileAtomically(m_file, bytesOf(text)); !written) return written;
   if (Result<void> opened = openFile(); !opened) return opened;

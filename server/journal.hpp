@@ -11,7 +11,7 @@
 
 namespace limn::server {
 
-/// Accepted edits in a file that outlives the process. A line a message: CRC-32C of the JSON in hexadecimal, a blank, the JSON. What
+/// Accepted edits in a file that outlives the process. A line a message (journal_lines.hpp). What
 /// was appended survives the end of the process at once, and of the machine too, but for mere views, which are not synced. When
 /// the file has grown far beyond what it says it is written anew, atomically. One thread.
 class Journal {
@@ -24,9 +24,11 @@ class Journal {
   Journal& operator=(const Journal&) = delete;
 
   /// All that was accepted, by the fewest messages: maybe a `load`, then `batch`es.
-  std::vector<protocol::ClientMessage> messages() const { return m_summary.messages(); }
+  std::vector<protocol::ClientMessage> messages() const;
+  /// The scene that was loaded last, if one was: its `load`.
+  std::optional<Accepted> load() const { return m_summary.load(); }
   /// `load`s and `batch`es. Errors: "io"; then the file holds none of them, and catchUp() or the next call tries again.
-  Result<void> append(std::span<const protocol::ClientMessage> messages);
+  Result<void> append(std::span<const Accepted> messages);
   /// As EditSummary::forget(); catchUp() writes it.
   void forget(const protocol::Edit& edit, const std::string& place) { m_behind |= m_summary.forget(edit, place); }
   std::optional<protocol::Edit> newest(const protocol::Edit& edit) const { return m_summary.newest(edit); }

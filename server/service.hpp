@@ -115,7 +115,8 @@ class Service : private TransportHandler {
   void takeUp(const std::vector<protocol::ClientMessage>& messages);
   void askForKept(uint32_t seq, std::vector<protocol::Edit> edits);
   void rememberUnacknowledged(const Origin& from, protocol::ClientMessage message);
-  void noteAccepted(const Origin& from, const std::string& techniqueBefore = {});
+  void noteAccepted(const EditAck& ack);
+  void noteAccepted(const LoadReply& reply);
   void noteTakenUp(const Origin& from);
   std::vector<protocol::Edit> noteSettled(const Origin& from);
   void noteRefused(const ErrorReply& reply);
@@ -154,7 +155,7 @@ class Service : private TransportHandler {
   std::set<std::pair<ConnectionId, uint32_t>> m_viewEdits;  ///< client and seq of those that were not answered yet
   std::map<std::pair<ConnectionId, uint32_t>, std::string_view> m_unsaid;  ///< the same: what their places have in front
   std::map<std::pair<ConnectionId, uint32_t>, protocol::ClientMessage> m_unacknowledged;  ///< for the journal: the same
-  std::vector<protocol::ClientMessage> m_accepted;          ///< since the journal was last written
+  std::vector<Accepted> m_accepted;        ///< since the journal was last written
   bool m_journalFails = false;             ///< and that was told
   double m_triedToKeep = 0.0;              ///< [s]
   std::map<uint32_t, std::vector<protocol::Edit>> m_takingUp;  ///< requests of the journal that were not answered yet, by seq

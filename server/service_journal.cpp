@@ -90,11 +90,16 @@ void Service::rememberUnacknowledged(const Origin& from, protocol::ClientMessage
   if (m_config.journal) m_unacknowledged.emplace(std::pair(from.client, from.seq), std::move(message));
 }
 
-void Service::noteAccepted(const Origin& from, const std::string& techniqueBefore) {
-  auto accepted = m_unacknowledged.extract({from.client, from.seq});
+void Service::noteAccepted(const EditAck& ack) {
+  auto accepted = m_unacknowledged.extract({ack.to.client, ack.to.seq});
   if (!accepted) return;
-  if (auto* batch = std::get_if<protocol::Batch>(&accepted.mapped())) nameTechniques(*batch, techniqueBefore);
-  m_accepted.push_back(std::move(accepted.mapped()));
+  if (auto* batch = std::get_if<protocol::Batch>(&accepted.mapped())) nameTechniques(*batch, ack.technique);
+  m_accepted.push_back({std::move(accepted.mapped())});
+}
+
+void Service::noteAccepted(const LoadReply& reply) {
+  auto accepted = m_unacknowledged.extract({reply.to.client, reply.to.seq});
+  if (accepted) m_accepted.push_back({std::move(accepted.mapped()), reply.scene->report.contents});
 }
 
 void Service::noteTakenUp(const Origin& from) {

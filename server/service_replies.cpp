@@ -31,7 +31,7 @@ struct ReplyHandler {
     const bool effective = !ack.superseded && ack.cost != CostClass::none;
     if (effective) {
       service.m_editors.insert(ack.to.client);
-      service.noteAccepted(ack.to, ack.technique);
+      service.noteAccepted(ack);
     } else {
       service.m_unacknowledged.erase({ack.to.client, ack.to.seq});
     }
@@ -66,7 +66,7 @@ struct ReplyHandler {
   void operator()(const LoadReply& reply) const {
     service.learnView(*reply.scene);
     service.m_loadedRevision = reply.scene->sceneRevision;
-    service.noteAccepted(reply.to);
+    service.noteAccepted(reply);
     if (session) {
       doneReading(reply.to.seq);
       service.send(*session,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <new>
 
+#include "renderer/base/hash.hpp"
 #include "renderer/scene/gltf_document.hpp"
 #include "renderer/scene/gltf_materials.hpp"
 #include "renderer/scene/gltf_nodes.hpp"
@@ -68,6 +69,7 @@ void checkExtent(const Scene& scene) {
 
 LoadedScene load(const std::filesystem::path& file, const LoadOptions& options) {
   gltf::Document document{gltf::openContainer(file, options), options.limits, {}, {}, {}};
+  const uint64_t contents = fnv1a(document.container.json);
   document.json = gltf::parseJson(document.container.json, options.limits.maxJsonDepth);
   document.container.json = {};
   gltf::checkStructure(document);
@@ -82,6 +84,7 @@ LoadedScene load(const std::filesystem::path& file, const LoadOptions& options) 
   gltf::readCameras(document, loaded.scene);
   gltf::readNodes(document, loaded.scene);
   loaded.report = document.reporter.take();
+  loaded.report.contents = contents;
 
   checkInstances(loaded.scene, options.limits, loaded.report);
   checkExtent(loaded.scene);

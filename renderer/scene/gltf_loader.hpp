@@ -36,6 +36,7 @@ struct LoadReport {
   std::vector<std::string> notes;  ///< "no camera: one was added that frames the scene", ...
   uint64_t triangles = 0, degenerateTriangles = 0, vertices = 0, imageBytes = 0;
   uint64_t instancedTriangles = 0;  ///< over all nodes
+  uint64_t contents = 0;            ///< hash of the glTF's JSON, in whose lists materials, lights and nodes have their numbers
 };
 
 struct LoadedScene {

@@ -101,6 +101,7 @@ Result<void> serve(const DaemonOptions& options, SignalWatcher& signals) {
   std::atomic<bool> begun = false;
   RenderCalls calls;
   calls.refused = [&](const Error& error) { return kept.insteadOf(error); };
+  calls.read = [&](const LoadReport& report) { kept.read(report); };
   calls.ready = [&](const View& view) {
     begun = true;
     service.begin(view, kept.messages());

@@ -1,5 +1,6 @@
 #include "server/daemon/journal_start.hpp"
 
+#include <span>
 #include <utility>
 
 #include "renderer/base/log.hpp"
@@ -13,15 +14,12 @@ JournalStart::JournalStart(const DaemonOptions& options, std::shared_ptr<Journal
 Result<std::filesystem::path> JournalStart::scene() {
   if (!m_journal) return m_given;
   if (Result<void> begun = m_journal->begin(); !begun) return begun.error();
-  for (const protocol::ClientMessage& message : m_journal->messages()) {
-    const auto* load = std::get_if<protocol::Load>(&message);
-    if (!load) continue;
-    const Result<std::filesystem::path> scene = resolveAsset(m_assetRoot, load->uri);
-    m_loaded = scene.ok();
-    if (scene) return scene;
-    if (Result<void> aside = setAside("the scene that was loaded last is gone: " + scene.error().text()); !aside)
-      return aside.error();
-  }
+  const std::optional<Accepted> load = m_journal->load();
+  if (!load) return m_given;
+  const Result<std::filesystem::path> scene = resolveAsset(m_assetRoot, std::get<protocol::Load>(load->message).uri);
+  m_loaded = scene.ok();
+  if (scene) return scene;
+  if (Result<void> aside = setAside("the scene that was loaded last is gone: " + scene.error().text()); !aside) return aside.error();
   return m_given;
 }
 
@@ -33,6 +31,15 @@ std::optional<std::filesystem::path> JournalStart::insteadOf(const Error& error)
     return std::nullopt;
   }
   return m_given;
+}
+
+void JournalStart::read(const LoadReport& report) {
+  std::optional<Accepted> load = m_loaded ? m_journal->load() : std::nullopt;
+  if (!load || load->contents == 0 || load->contents == report.contents) return;
+  load->contents = report.contents;
+  Result<void> kept = setAside("the scene that was loaded last has changed");
+  if (kept) kept = m_journal->append(std::span(&*load, 1));
+  if (!kept) logWarning(kept.error().text());
 }
 
 std::vector<protocol::ClientMessage> JournalStart::messages() const {

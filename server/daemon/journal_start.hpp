@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "renderer/scene/gltf_loader.hpp"
 #include "server/daemon/daemon_options.hpp"
 #include "server/journal.hpp"
 
@@ -21,6 +22,8 @@ class JournalStart {
   /// The scene cannot be begun with: another, for which the journal is set aside. Nothing where the scene is `--scene`, or where the
   /// device was lost.
   std::optional<std::filesystem::path> insteadOf(const Error& error);
+  /// The scene was read. One that is not what it was when it was loaded keeps none of its edits.
+  void read(const LoadReport& report);
   /// To be taken up.
   std::vector<protocol::ClientMessage> messages() const;
   /// The process ends. `begun`: the renderer had the scene.

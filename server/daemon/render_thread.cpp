@@ -19,11 +19,12 @@ Result<std::unique_ptr<vk::Device>> openDevice(const DaemonOptions& options) {
   return vk::Device::open(wanted);
 }
 
-Result<std::unique_ptr<Session>> makeSession(vk::Device& device, const DaemonOptions& options, Mailbox& mailbox,
-                                             FrameSlot& frames, StatusQueue& replies) {
+Result<std::unique_ptr<Session>> makeSession(vk::Device& device, const DaemonOptions& options, const RenderCalls& calls,
+                                             Mailbox& mailbox, FrameSlot& frames, StatusQueue& replies) {
   const double begin = nowSeconds();
   Result<LoadedScene> loaded = loadGltf(options.scene, {options.assetRoot, {}});
   if (!loaded) return loaded.error();
+  calls.read(loaded->report);
   char seconds[32];
   std::snprintf(seconds, sizeof seconds, "%.2f s", nowSeconds() - begin);
   logInfo(options.scene.filename().string() + ": " + std::to_string(loaded->report.triangles) + " triangles, read in " +
@@ -76,11 +77,11 @@ void RenderThread::run(DaemonOptions options, FrameSlot& frames, StatusQueue& re
   const Start start = m_start.get();
   options.scene = start.scene;
   if (device && !m_mailbox.closed()) {
-    Result<std::unique_ptr<Session>> session = makeSession(**device, options, m_mailbox, frames, replies);
+    Result<std::unique_ptr<Session>> session = makeSession(**device, options, start.calls, m_mailbox, frames, replies);
     const std::optional<std::filesystem::path> other = session ? std::nullopt : start.calls.refused(session.error());
     if (other) {
       options.scene = *other;
-      session = makeSession(**device, options, m_mailbox, frames, replies);
+      session = makeSession(**device, options, start.calls, m_mailbox, frames, replies);
     }
     m_outcome = session ? serve(**session, replies, start.calls) : Result<void>(session.error());
   }

@@ -16,6 +16,7 @@ namespace limn::server {
 struct RenderCalls {
   /// The scene cannot be begun with: another to begin with, if there is one.
   std::function<std::optional<std::filesystem::path>(const Error&)> refused = [](const Error&) { return std::nullopt; };
+  std::function<void(const LoadReport&)> read = [](const LoadReport&) {};   ///< the scene's file
   std::function<void(const View&)> ready = [](const View&) {};   ///< the first edit could be applied; the scene's view
   std::function<void()> ended = [] {};
 };

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "renderer/base/clock.hpp"
+#include "tests/service/accepted_edits.hpp"
 #include "tests/service/cli/run_program.hpp"
 #include "tests/service/service_fixture.hpp"
 
@@ -15,27 +16,6 @@ namespace limn::server::testing {
 namespace {
 
 namespace fs = std::filesystem;
-using Messages = std::vector<protocol::ClientMessage>;
-
-protocol::ClientMessage edited(protocol::Edit edit) { return protocol::Batch{1, {std::move(edit)}}; }
-
-protocol::ClientMessage roughness(uint32_t material, float value) {
-  protocol::MaterialEdit edit;
-  edit.material = material;
-  edit.roughness = value;
-  return edited(edit);
-}
-
-protocol::ClientMessage view(double x) {
-  protocol::CameraEdit edit;
-  edit.view.eye = {x, 1.0, 2.0};
-  edit.view.yfov = 0.5f;
-  return edited(edit);
-}
-
-protocol::ClientMessage technique(std::optional<std::string> name, std::vector<std::pair<std::string, double>> parameters) {
-  return edited(protocol::TechniqueEdit{std::move(name), std::move(parameters)});
-}
 
 std::unique_ptr<Journal> opened(const std::string& file) {
   Result<std::unique_ptr<Journal>> journal = Journal::open(file);
@@ -43,113 +23,20 @@ std::unique_ptr<Journal> opened(const std::string& file) {
   return journal ? journal.take() : nullptr;
 }
 
-void append(Journal& journal, const Messages& messages) {
-  const Result<void> done = journal.append(messages);
-  EXPECT_TRUE(done.ok()) << (done ? "" : done.error().text());
+Result<void> tryAppend(Journal& journal, const Messages& messages) {
+  std::vector<Accepted> accepted;
+  for (const protocol::ClientMessage& message : messages) accepted.push_back({message});
+  return journal.append(accepted);
 }
 
-/// What a journal has to say after these.
-Messages summaryOf(const Messages& messages, size_t count) {
-  EditSummary summary;
-  for (size_t i = 0; i < count; ++i) summary.add(messages[i]);
-  return summary.messages();
+void append(Journal& journal, const Messages& messages) {
+  const Result<void> done = tryAppend(journal, messages);
+  EXPECT_TRUE(done.ok()) << (done ? "" : done.error().text());
 }
 
 std::string bytesOf(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// A bit of everything.
-Messages someEdits() {
-  protocol::MaterialEdit coat;
-  coat.material = 2;
-  coat.clearcoat = 0.1f;
-  protocol::EnvironmentEdit sky;
-  sky.image = "skies/evening.hdr";
-  return {roughness(2, 0.25f), view(1.0), edited(coat), technique({}, {{"maxBounces", 3.0}}), roughness(2, 0.75f), edited(sky),
-          technique("point-projection", {{"bounces", 2.0}}), protocol::Load{7, "rooms/käse.glb"}, roughness(1, 0.5f), view(4.0)};
-}
-
-TEST(EditSummary, keepsTheNewestOfEachThing) {
-  const Messages edits = someEdits();
-  protocol::MaterialEdit both;
-  both.material = 2;
-  both.clearcoat = 0.1f;
-  both.roughness = 0.75f;
-  const Messages before = summaryOf(edits, 6);
-  ASSERT_EQ(before.size(), 4u) << "technique, view, environment and one material";
-  EXPECT_NE(std::find(before.begin(), before.end(), edited(both)), before.end());
-  const Messages after = summaryOf(edits, edits.size());
-  ASSERT_EQ(after.size(), 5u);
-  EXPECT_EQ(after[0], protocol::ClientMessage(protocol::Load{1, "rooms/käse.glb"}));
-  EXPECT_EQ(after[2], edits[6]) << "another scene is shown by the same technique";
-  EXPECT_EQ(Messages(after.begin() + 3, after.end()), (Messages{view(4.0), roughness(1, 0.5f)}))
-      << "and has nothing else of the one before";
-}
-
-TEST(EditSummary, keepsEveryLensThatAFileMayHave) {
-  for (const float yfov : {1e-4f, 3.1405926f, 3.1405928f})
-    for (const float metres : {1e-45f, 1e-12f, 1e30f}) {
-      protocol::CameraEdit edit;
-      edit.view.up = {0.0, 1.0, 0.0};
-      edit.view.yfov = yfov;
-      edit.view.ymag = edit.view.znear = metres;
-      const Messages edits{edited(edit)};
-      EXPECT_EQ(summaryOf(edits, 1), edits) << yfov << " rad, " << metres << " m";
-    }
-}
-
-TEST(EditSummary, passesOverWhatCannotBeSaid) {
-  protocol::CameraEdit edit;
-  edit.view.yfov = 4.0f;
-  const Messages edits{edited(edit), roughness(1, 0.5f)};
-  EXPECT_EQ(summaryOf(edits, 2), (Messages{edits[1]}));
-}
-
-TEST(EditSummary, aChangeOfTechniqueBeginsWithDefaults) {
-  EditSummary summary;
-  const Messages edits{technique({}, {{"maxBounces", 3.0}}), technique("point-projection", {{"bounces", 2.0}}),
-                       technique({}, {{"points", 65536.0}}), technique("path-tracing", {})};
-  for (size_t i = 0; i < 3; ++i) summary.add(edits[i]);
-  EXPECT_EQ(summary.messages(), (Messages{edits[0], technique("point-projection", {{"bounces", 2.0}, {"points", 65536.0}})}));
-  summary.add(edits[3]);
-  EXPECT_EQ(summary.messages(), (Messages{edits[3]})) << "nothing is left of the technique before";
-}
-
-TEST(EditSummary, forgetsWhatIsRefusedAndNoMore) {
-  EditSummary summary;
-  protocol::MaterialEdit material;
-  material.material = 2;
-  material.roughness = material.metallic = 0.5f;
-  protocol::CameraEdit camera;
-  camera.view.up = {0.0, 1.0, 0.0};
-  const protocol::TechniqueEdit chosen{"path-tracing", {{{"gone", 1.0}, {"bounces", 2.0}}}};
-  for (const protocol::Edit& edit : {protocol::Edit(material), protocol::Edit(camera), protocol::Edit(chosen), protocol::Edit(protocol::ImageEdit{640, 480})})
-    summary.add(edited(edit));
-  EXPECT_TRUE(summary.forget(chosen, "/parameters/gone"));
-  EXPECT_TRUE(summary.forget(material, "/roughness"));
-  EXPECT_TRUE(summary.forget(camera, "/view/target")) << "half a view is none";
-  material.roughness = std::nullopt;
-  EXPECT_EQ(summary.messages(),
-            (Messages{protocol::Batch{1, {protocol::ImageEdit{640, 480}, protocol::TechniqueEdit{"path-tracing", {{{"bounces", 2.0}}}}}},
-                      edited(material)}));
-  EXPECT_TRUE(summary.forget(chosen, "/technique")) << "its parameters are nobody else's";
-  EXPECT_TRUE(summary.forget(material, "/material"));
-  EXPECT_EQ(summary.messages(), (Messages{edited(protocol::ImageEdit{640, 480})}));
-  EXPECT_FALSE(summary.forget(material, "/metallic"));
-}
-
-TEST(EditSummary, aSizeComesWithItsTechnique) {
-  EditSummary summary;
-  const protocol::ImageEdit size{640, 480};
-  protocol::ResolveEdit display;
-  display.exposure = 1.5f;
-  const protocol::TechniqueEdit chosen{"point-projection", {}};
-  for (const auto& edit : {edited(size), edited(display), edited(chosen), protocol::ClientMessage(protocol::Load{3, "b.glb"})})
-    summary.add(edit);
-  EXPECT_EQ(summary.messages(),
-            (Messages{protocol::Load{1, "b.glb"}, protocol::Batch{1, {size, chosen}}, edited(display)}));
 }
 
 TEST(Journal, givesBackWhatWasAppended) {
@@ -161,6 +48,18 @@ TEST(Journal, givesBackWhatWasAppended) {
   EXPECT_EQ(again->messages(), summaryOf(edits, 3));
   append(*again, {edits.begin() + 3, edits.end()});
   EXPECT_EQ(again->messages(), summaryOf(edits, edits.size()));
+}
+
+TEST(Journal, knowsWhatALoadedFileHeld) {
+  const test::ScratchDirectory scratch;
+  const std::string file = scratch.file("room.edits");
+  for (const uint64_t contents : {0ull, 0x0123456789abcdefull, ~0ull}) {
+    const Accepted load{protocol::Load{1, "an,\"contents\":\"odd\"}.glb"}, contents};
+    const std::vector<Accepted> messages{load, {roughness(0, 0.5f)}};
+    EXPECT_TRUE(opened(file)->append(messages).ok());
+    EXPECT_EQ(opened(file)->load(), load);
+  }
+  EXPECT_FALSE(opened(scratch.file("other.edits"))->load());
 }
 
 TEST(Journal, tornAnywhereItHoldsTheWholeLinesBefore) {
@@ -241,7 +140,7 @@ TEST(Journal, aFullDiskLosesNothingThatFitsLater) {
     append(*journal, {edits[0]});
     for (size_t i : {1u, 2u}) {
       const FullDisk full(journal->bytes() + 20);
-      const Result<void> refused = journal->append(std::span(&edits[i], 1));
+      const Result<void> refused = tryAppend(*journal, {edits[i]});
       ASSERT_FALSE(refused.ok());
       EXPECT_EQ(refused.error().code, "io");
       EXPECT_TRUE(journal->behind());
@@ -261,7 +160,7 @@ TEST(Journal, catchesUpWithoutAnotherEdit) {
     append(*journal, {edits[0]});
     {
       const FullDisk full(journal->bytes() + 20);
-      EXPECT_FALSE(journal->append(std::span(&edits[1], 1)).ok());
+      EXPECT_FALSE(tryAppend(*journal, {edits[1]}).ok());
       EXPECT_FALSE(journal->catchUp().ok());
     }
     EXPECT_TRUE(journal->catchUp().ok());

@@ -169,14 +169,39 @@ TEST(LimndJournal, theSceneThatWasLoadedLastComesBack) {
   EXPECT_EQ(scene.width, 80u);
 }
 
+TEST(LimndJournal, aLoadedSceneThatHasChangedKeepsNoneOfItsEdits) {
+  const test::ScratchDirectory scratch;
+  const std::string scenes = changingScenes(scratch);
+  {
+    Kept kept(scratch, scenes);
+    load(kept.client, "loaded.glb");
+    edit(kept.client, 1, 0.625f);
+    kill(kept.daemon);
+  }
+  {
+    Kept kept(scratch, scenes);
+    EXPECT_EQ(describe(kept.client).materials.at(1).roughness, 0.625f) << "it has not changed yet";
+    kill(kept.daemon);
+  }
+  fs::copy_file(kScene, scenes + "/loaded.glb", fs::copy_options::overwrite_existing);
+  for (int starts = 0; starts < 2; ++starts) {
+    Kept kept(scratch, scenes);
+    const auto scene = describe(kept.client);
+    EXPECT_EQ(scene.name, "loaded.glb");
+    EXPECT_NE(scene.materials.at(1).roughness, 0.625f);
+    EXPECT_NE(setAside(scratch).find("0.625"), std::string::npos) << "nothing is thrown away";
+    kill(kept.daemon);
+  }
+}
+
 /// As after an update of the program: a parameter that it accepted is none any more.
 TEST(LimndJournal, aParameterThatIsGoneTakesNothingElseAlong) {
   const test::ScratchDirectory scratch;
   {
     const auto journal = Journal::open(journalFileFor(scratch.file(""), kScene).take()).take();
-    const Result<void> kept = journal->append(std::vector<protocol::ClientMessage>{
-        protocol::Batch{1, {protocol::ImageEdit{80, 48}}},
-        protocol::Batch{1, {protocol::TechniqueEdit{"path-tracing", {{{"gone", 1.0}, {"maxSamples", 8.0}}}}}}});
+    const Result<void> kept = journal->append(std::vector<Accepted>{
+        {protocol::Batch{1, {protocol::ImageEdit{80, 48}}}},
+        {protocol::Batch{1, {protocol::TechniqueEdit{"path-tracing", {{{"gone", 1.0}, {"maxSamples", 8.0}}}}}}}});
     ASSERT_TRUE(kept.ok());
   }
   for (const bool again : {false, true}) {
