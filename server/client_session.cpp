@@ -20,16 +20,44 @@ size_t counted(const OutgoingMessage& message) { return std::min(message.size(),
 
 }  // namespace
 
-bool ClientSession::push(OutgoingMessage message) {
+/// The message, or in place of one that is longer than any may be, a scene, the error that says so.
+std::string textOf(const protocol::ServerMessage& message) {
+  std::string text = protocol::encode(message);
+  if (text.size() <= protocol::kMaxServerTextBytes) return text;
+  const auto* scene = std::get_if<protocol::SceneMessage>(&message);
+  protocol::ErrorMessage error;
+  if (scene) error.seq = scene->seq;
+  error.code = protocol::kErrorLimit;
+  error.message = "the description of the scene has " + std::to_string(text.size()) + " bytes, a message at most " +
+                  std::to_string(protocol::kMaxServerTextBytes);
+  if (error.seq) error.place = "seq " + std::to_string(*error.seq);
+  return protocol::encode(error);
+}
+
+bool ClientSession::push(OutgoingMessage message, bool isScene) {
   const size_t bytes = counted(message);
   if (m_queuedBytes + bytes > kMaxQueuedBytes) return false;
   m_queuedBytes += bytes;
-  m_queue.push_back(std::move(message));
+  m_queue.push_back({std::move(message), isScene});
   return true;
 }
 
-bool ClientSession::queue(const protocol::ServerMessage& message) {
-  return push({false, protocol::encode(message), nullptr});
+bool ClientSession::queue(std::string text) { return push({false, std::move(text), nullptr}); }
+
+bool ClientSession::queueScene(std::string text) {
+  const auto unsent = std::find_if(m_queue.begin(), m_queue.end(), [](const Queued& queued) { return queued.isScene; });
+  if (unsent == m_queue.end()) return push({false, std::move(text), nullptr}, true);
+  m_queuedBytes -= counted(unsent->message);
+  unsent->message.head = std::move(text);
+  m_queuedBytes += counted(unsent->message);
+  return true;
+}
+
+void ClientSession::dropScene() {
+  std::erase_if(m_queue, [this](const Queued& queued) {
+    if (queued.isScene) m_queuedBytes -= counted(queued.message);
+    return queued.isScene;
+  });
 }
 
 bool ClientSession::queueFile(uint32_t seq, std::shared_ptr<const std::vector<uint8_t>> file) {
@@ -44,14 +72,13 @@ bool ClientSession::queueFile(uint32_t seq, std::shared_ptr<const std::vector<ui
 
 std::optional<OutgoingMessage> ClientSession::takeQueued() {
   if (m_queue.empty()) return std::nullopt;
-  OutgoingMessage message = std::move(m_queue.front());
+  Queued next = std::move(m_queue.front());
   m_queue.pop_front();
-  m_queuedBytes -= counted(message);
-  if (message.body) {
-    m_fileBytes += message.size();
-    savingSeq = 0;
-  }
-  return message;
+  m_queuedBytes -= counted(next.message);
+  m_bytesBefore += next.message.size();
+  m_sceneSent |= next.isScene;
+  if (next.message.body) savingSeq = 0;
+  return std::move(next.message);
 }
 
 void ClientSession::take(std::shared_ptr<const EncodedFrame> frame) {
@@ -74,8 +101,9 @@ OutgoingMessage ClientSession::takeFrame(double now) {
   header.payloadBytes = uint32_t(frame->bytes->size());
   header.crc32c = frame->crc32c;
   ++framesSent;
+  m_sceneSent = false;
   OutgoingMessage message{true, headerBytes(header), frame->bytes};
-  flow.sent(header.frameId, message.size() + std::exchange(m_fileBytes, 0), now);
+  flow.sent(header.frameId, message.size() + std::exchange(m_bytesBefore, 0), now);
   return message;
 }
 

@@ -19,6 +19,9 @@ struct ErrorWait {
   bool asked = false;          ///< the film's hash was asked for
 };
 
+/// The text of a message, or, in place of a scene that is longer than any message may be, of the error that says so.
+std::string textOf(const protocol::ServerMessage& message);
+
 /// What the daemon knows of one connection. Loop thread.
 class ClientSession {
  public:
@@ -32,12 +35,17 @@ class ClientSession {
   double age(double now) const { return now - m_openedAt; }
 
   /// Queues a text message. False when the reader is too slow.
-  [[nodiscard]] bool queue(const protocol::ServerMessage& message);
+  [[nodiscard]] bool queue(std::string text);
+  /// Queues the scene as somebody else left it, in the place of one that was not sent yet. False as above.
+  [[nodiscard]] bool queueScene(std::string text);
+  /// Takes such a scene from the queue: there is a newer one.
+  void dropScene();
   /// Queues a file as a binary message. False as above.
   [[nodiscard]] bool queueFile(uint32_t seq, std::shared_ptr<const std::vector<uint8_t>> file);
   /// The oldest queued message.
   std::optional<OutgoingMessage> takeQueued();
-  bool hasQueued() const { return !m_queue.empty(); }
+  /// Whether a picture goes before what is queued: scenes that follow each other leave it its turn.
+  bool pictureIsNext() const { return ready && (m_queue.empty() || (m_queue.front().isScene && m_sceneSent)); }
   size_t queuedMessages() const { return m_queue.size(); }
 
   /// Whether the renderer has to go on for this client: it watches, or waits for an error that pictures tell.
@@ -75,13 +83,18 @@ class ClientSession {
   uint64_t framesSent = 0, framesReplaced = 0;
 
  private:
-  bool push(OutgoingMessage message);
+  struct Queued {
+    OutgoingMessage message;
+    bool isScene = false;              ///< of queueScene()
+  };
+  bool push(OutgoingMessage message, bool isScene = false);
 
   ConnectionId m_id;
   double m_openedAt;
-  std::deque<OutgoingMessage> m_queue;
+  std::deque<Queued> m_queue;
   size_t m_queuedBytes = 0;            ///< as they count
-  size_t m_fileBytes = 0;              ///< written since the last picture, which comes after them
+  size_t m_bytesBefore = 0;            ///< written since the last picture, which comes after them
+  bool m_sceneSent = false;            ///< since the last picture
 };
 
 }  // namespace limn::server

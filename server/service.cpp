@@ -83,12 +83,11 @@ void Service::onClose(ConnectionId id) {
 std::optional<OutgoingMessage> Service::nextMessage(ConnectionId id) {
   ClientSession* session = find(id);
   if (!session) return std::nullopt;
-  if (auto queued = session->takeQueued()) return queued;
-  if (session->closing) {
-    m_transport->close(id, *session->closing, session->closeReason);
+  if (!session->pictureIsNext()) {
+    if (auto queued = session->takeQueued()) return queued;
+    if (session->closing) m_transport->close(id, *session->closing, session->closeReason);
     return std::nullopt;
   }
-  if (!session->ready) return std::nullopt;
   OutgoingMessage frame = session->takeFrame(nowSeconds());
   ++m_counters.framesSent;
   m_counters.frameBytes += frame.size();
@@ -146,9 +145,12 @@ void Service::checkTimers(ClientSession& session, double now) {
 }
 
 void Service::send(ClientSession& session, const protocol::ServerMessage& message) {
-  if (session.closing) return;
-  if (!session.queue(message)) return dropSlowReader(session);
-  m_transport->wantWrite(session.id());
+  if (!session.closing) noteQueued(session, session.queue(textOf(message)));
+}
+
+void Service::noteQueued(ClientSession& session, bool taken) {
+  if (taken) m_transport->wantWrite(session.id());
+  else dropSlowReader(session);
 }
 
 void Service::sendError(ClientSession& session, uint32_t seq, const Error& error) {

@@ -81,6 +81,7 @@ class Service : private TransportHandler {
   ClientSession* find(ConnectionId id);
   void send(ClientSession& session, const protocol::ServerMessage& message);
   void sendError(ClientSession& session, uint32_t seq, const Error& error);
+  void noteQueued(ClientSession& session, bool taken);
   void closeSession(ClientSession& session, CloseCode code, const std::string& reason);
   void dropSlowReader(ClientSession& session);
   void tellWatched();

@@ -164,9 +164,16 @@ void Service::learnView(const SceneSummary& scene) {
 }
 
 void Service::broadcastScene(const SceneSummary& scene, protocol::SceneCause cause, ConnectionId except) {
-  const protocol::ServerMessage message = toWire(scene, cause);
-  for (auto& [id, session] : m_sessions)
-    if (session.joined && id != except) send(session, message);
+  const std::string text = textOf(toWire(scene, cause));
+  for (auto& [id, session] : m_sessions) {
+    if (!session.joined || session.closing || id == except) continue;
+    if (cause == protocol::SceneCause::edited) {
+      noteQueued(session, session.queueScene(text));
+    } else {
+      session.dropScene();
+      noteQueued(session, session.queue(text));
+    }
+  }
 }
 
 void Service::sendStatus(ClientSession& session, const protocol::Status& status) {

@@ -131,6 +131,22 @@ TEST(Limits, aBatchOverTheLimitIsRefusedAndOneAtTheLimitIsTaken) {
   EXPECT_EQ(client.await<protocol::ErrorMessage>().seq, 3u);
 }
 
+TEST(Limits, aSceneThatIsTooLongToBeToldIsAnError) {
+  TestService::Options options;
+  options.renderer.materials = 200000;
+  TestService server(options);
+  TestClient client(server.port());
+  client.greet(false);
+  const auto joining = client.await<protocol::ErrorMessage>();
+  EXPECT_EQ(joining.code, "limit");
+  EXPECT_FALSE(joining.seq);
+  const uint32_t seq = client.nextSeq();
+  client.send(protocol::Describe{seq});
+  const auto asked = client.await<protocol::ErrorMessage>();
+  EXPECT_EQ(asked.code, "limit");
+  EXPECT_EQ(asked.seq, seq);
+}
+
 TEST(Limits, aFullMailboxIsToldAsBusy) {
   TestService server;
   TestClient client(server.port());
