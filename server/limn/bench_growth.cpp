@@ -63,6 +63,7 @@ Result<Growth::Point> measurePoint(vk::Device& device, const BenchOptions& optio
   config.width = config.height = size.side;
   config.technique = technique;
   config.parameters = parametersOf(*findTechnique(technique), options.settings);
+  putOffTheEnd(config.parameters, *findTechnique(technique));
   if (size.points) config.parameters.emplace_back(kPoints, *size.points);
   Result<std::unique_ptr<BenchSession>> made =
       BenchSession::create(device, growthScene(size.triangles, size.lights), config);

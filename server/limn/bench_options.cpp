@@ -11,6 +11,7 @@ namespace fs = std::filesystem;
 constexpr double kLongest = 1e6;  // [s]
 constexpr const char* kDefaultBudgets = "0.25,0.5,1,2,4,8";
 constexpr const char* kAdaptive = "adaptive";
+constexpr const char* kMaxSamples = "maxSamples";
 /// Of the generated scenes, those that stand for a kind of light transport each.
 constexpr const char* kDefaultScenes[] = {"cornell-box", "cornell-point", "cornell-indirect", "cornell-glossy", "cornell-caustic",
                                           "veach-mis",   "ajar-door",     "colonnade",      "thin-furniture",
@@ -205,6 +206,16 @@ std::vector<std::pair<std::string, double>> parametersOf(const TechniqueInfo& te
     if (value) parameters.emplace_back(parameter.name, *value);
   }
   return parameters;
+}
+
+void setParameter(std::vector<std::pair<std::string, double>>& parameters, const std::string& name, double value) {
+  std::erase_if(parameters, [&](const auto& entry) { return entry.first == name; });
+  parameters.emplace_back(name, value);
+}
+
+void putOffTheEnd(std::vector<std::pair<std::string, double>>& parameters, const TechniqueInfo& technique) {
+  for (const ParameterInfo& parameter : technique.parameters)
+    if (parameter.name == kMaxSamples) setParameter(parameters, parameter.name, parameter.maximum);
 }
 
 }  // namespace limn::bench

@@ -50,4 +50,9 @@ Result<BenchOptions> benchOptions(const Arguments& arguments);
 std::vector<std::pair<std::string, double>> parametersOf(const TechniqueInfo& technique,
                                                          const std::vector<Setting>& settings);
 
+/// Sets one of them, in place of a value that it has.
+void setParameter(std::vector<std::pair<std::string, double>>& parameters, const std::string& name, double value);
+/// Has the technique take samples for as long as it can: steps that come after its end are none.
+void putOffTheEnd(std::vector<std::pair<std::string, double>>& parameters, const TechniqueInfo& technique);
+
 }  // namespace limn::bench

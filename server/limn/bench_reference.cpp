@@ -92,13 +92,8 @@ SessionConfig referenceConfig(const BenchOptions& options) {
   config.height = options.height;
   config.technique = judge.name;
   config.parameters = parametersOf(judge, options.settings);
-  const auto set = [&](const std::string& name, double value) {
-    std::erase_if(config.parameters, [&](const auto& entry) { return entry.first == name; });
-    config.parameters.emplace_back(name, value);
-  };
-  set("adaptive", 0.0);
-  for (const ParameterInfo& parameter : judge.parameters)
-    if (parameter.name == "maxSamples") set(parameter.name, parameter.maximum);
+  setParameter(config.parameters, "adaptive", 0.0);
+  putOffTheEnd(config.parameters, judge);
   return config;
 }
 

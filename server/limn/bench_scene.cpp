@@ -85,7 +85,9 @@ class SceneBench {
 
   Result<void> measureAblations() {
     for (const std::string& name : m_options.techniques) {
-      Result<Ablation> ablation = measureAblation(m_device, m_loaded, configOf(name));
+      SessionConfig config = configOf(name);
+      putOffTheEnd(config.parameters, *findTechnique(name));
+      Result<Ablation> ablation = measureAblation(m_device, m_loaded, config);
       if (!ablation) return ablation.error();
       m_result.ablations.push_back(ablation.take());
     }

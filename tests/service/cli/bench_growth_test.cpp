@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "server/limn/bench_options.hpp"
 #include "server/limn/bench_page_parts.hpp"
 #include "server/limn/bench_plots.hpp"
 
@@ -42,6 +44,16 @@ TEST(BenchGrowth, TimeAndMemoryArePlottedWithTheirExponents) {
   ASSERT_EQ(plots[1].lines.size(), 2u);
   EXPECT_EQ(plots[1].lines[0].points.back().x, 256.0);
   EXPECT_EQ(plots[1].lines[0].points.back().y, 30.0);
+}
+
+TEST(BenchGrowth, NoTechniqueEndsBeforeItsStepsAreTimed) {
+  for (const TechniqueInfo& technique : techniqueInfos()) {
+    std::vector<std::pair<std::string, double>> parameters = parametersOf(technique, {{technique.name, "maxSamples", 4.0}});
+    putOffTheEnd(parameters, technique);
+    const auto isEnd = [](const auto& parameter) { return parameter.first == "maxSamples"; };
+    ASSERT_EQ(std::count_if(parameters.begin(), parameters.end(), isEnd), 1) << technique.name;
+    EXPECT_GE(std::find_if(parameters.begin(), parameters.end(), isEnd)->second, 65536.0) << technique.name;
+  }
 }
 
 TEST(BenchGrowth, ThePageHasALineATechniqueAndAxis) {
