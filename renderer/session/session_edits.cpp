@@ -148,6 +148,7 @@ Result<void> Session::Impl::handle(EditRequest& request) {
     return {};
   }
   const ChangeSet changes = apply(scene, resolve, request.edits);
+  forgetSummary(request.edits);
   const RestartPlan plan = planRestart(changes, setUp->parameterCost, setUp->sizeChanged);
   if (plan.syncScene) ++sceneRevision;
   if (changes.view || setUp->sizeChanged) ++viewRevision;
@@ -164,6 +165,9 @@ Result<void> Session::Impl::handle(LoadRequest& request) {
   Scene before = std::exchange(scene, std::move(request.loaded->scene));
   LoadReport reportBefore = std::exchange(report, std::move(request.loaded->report));
   cleanEnvironment(scene, report.notes);
+  knownSummary = nullptr;
+  knownSceneHash.reset();
+  knownBounds.reset();
   if (auto shown = showScene(); !shown) {
     // The scene does not fit the device: the old one comes back, and the client hears why.
     if (shown.error().code == "device-lost") return shown;

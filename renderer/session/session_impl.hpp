@@ -95,7 +95,9 @@ struct Session::Impl {
   Result<void> handle(const WatchRequest& request);
   Result<void> answerWaits();
   Result<FilmImage> readFilm();
-  std::shared_ptr<const SceneSummary> summary() const;
+  std::shared_ptr<const SceneSummary> summary();
+  uint64_t sceneHash();
+  void forgetSummary(std::span<const Edit> edits);
 
   // session_warm_up.cpp
   void planWarmUp();
@@ -118,6 +120,9 @@ struct Session::Impl {
   SceneNeeds needs;
   uint32_t sceneRevision = 0, viewRevision = 0;
   uint64_t lightingRevision = 0;  ///< of the derived data
+  std::shared_ptr<const SceneSummary> knownSummary;  ///< since something was last edited
+  std::optional<uint64_t> knownSceneHash;            ///< the same, of what Scene::hash() is about
+  std::optional<Bounds> knownBounds;                 ///< since a node was last edited
 
   gpu::DeviceScene mirror;
   SceneTracer tracer;

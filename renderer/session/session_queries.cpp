@@ -47,7 +47,7 @@ Result<FilmImage> Session::Impl::readFilm() {
   auto read = film->read(device);
   if (!read) return read;
   const uint32_t last = config.firstSample + progress.samplesPerPixel;
-  read->metadata = {{"limn:sceneHash", std::to_string(scene.hash())},
+  read->metadata = {{"limn:sceneHash", std::to_string(sceneHash())},
                     {"limn:technique", technique->info().name},
                     {"limn:seed", std::to_string(config.seed)},
                     {"limn:samples", std::to_string(config.firstSample) + ":" + std::to_string(last)},
@@ -81,10 +81,27 @@ Result<void> Session::Impl::handle(const SaveRequest& request) {
   return {};
 }
 
-std::shared_ptr<const SceneSummary> Session::Impl::summary() const {
+uint64_t Session::Impl::sceneHash() {
+  if (!knownSceneHash) knownSceneHash = scene.hash();
+  return *knownSceneHash;
+}
+
+void Session::Impl::forgetSummary(std::span<const Edit> edits) {
+  knownSummary = nullptr;
+  for (const Edit& edit : edits) {
+    if (std::holds_alternative<SetNodeTransform>(edit)) knownBounds.reset();
+    const bool besides = std::holds_alternative<SetView>(edit) || std::holds_alternative<SetResolve>(edit) ||
+                         std::holds_alternative<SetTechnique>(edit) || std::holds_alternative<SetImageSize>(edit);
+    if (!besides) knownSceneHash.reset();
+  }
+}
+
+// Every vertex is looked at for hash and bounds, and clients ask while others drag.
+std::shared_ptr<const SceneSummary> Session::Impl::summary() {
+  if (knownSummary) return knownSummary;
   auto s = std::make_shared<SceneSummary>();
   s->name = scene.name;
-  s->hash = scene.hash();
+  s->hash = sceneHash();
   s->sceneRevision = sceneRevision;
   s->viewRevision = viewRevision;
   s->materials = scene.materials;
@@ -99,9 +116,10 @@ std::shared_ptr<const SceneSummary> Session::Impl::summary() const {
   s->parameters.assign(parameters.begin(), parameters.end());
   s->width = config.width;
   s->height = config.height;
-  s->bounds = worldBounds(scene);
+  if (!knownBounds) knownBounds = worldBounds(scene);
+  s->bounds = *knownBounds;
   s->report = report;
-  return s;
+  return knownSummary = s;
 }
 
 Result<void> Session::Impl::handle(const DescribeRequest& request) {

@@ -262,5 +262,31 @@ TEST_F(Loop, DescribeTellsWhatPanelsNeed) {
   EXPECT_EQ(s.parameters.size(), techniqueInfos().front().parameters.size());
 }
 
+TEST_F(Loop, WhatWasDescribedIsMadeAnewOnlyWhenItHasChanged) {
+  std::shared_ptr<const SceneSummary> last;
+  const auto described = [&] {
+    for (int i = 0; i < 2; ++i) session().ask(DescribeRequest{});
+    session().run(0);
+    const auto replies = session().take<DescribeReply>();
+    EXPECT_EQ(replies.size(), 2u);
+    EXPECT_EQ(replies.front().scene, replies.back().scene) << "two who ask are told the same";
+    EXPECT_NE(replies.back().scene, last) << "something was edited";
+    return last = replies.back().scene;
+  };
+  SetNodeTransform moved;
+  moved.translation = glm::dvec3(0.0, 50.0, 0.0);
+  SetMaterial painted;
+  painted.baseColor = glm::vec4(0.25f, 0.5f, 0.75f, 1.0f);
+  for (const Edit& edit : {viewFrom(0.5), Edit(painted), intensity(7.0f), Edit(SetResolve{0.25f}), Edit(moved),
+                           Edit(SetEnvironment{.radiance = glm::vec3(0.5f)})}) {
+    session().edit({edit});
+    const auto scene = described();
+    EXPECT_EQ(scene->hash, session().scene().hash());
+    const Bounds bounds = worldBounds(session().scene());
+    EXPECT_EQ(scene->bounds.low, bounds.low);
+    EXPECT_EQ(scene->bounds.high, bounds.high);
+  }
+}
+
 }  // namespace
 }  // namespace limn::test
