@@ -142,6 +142,7 @@ class Service : private TransportHandler {
   std::unique_ptr<Transport> m_transport;
   std::unique_ptr<EncodeWorker> m_encoder;
   std::unique_ptr<LoaderWorker> m_loader;
+  std::atomic<bool> m_begun{false};        ///< begin() is over
   std::atomic<bool> m_ready{false};        ///< written by the render thread
 
   std::map<ConnectionId, ClientSession> m_sessions;
@@ -151,7 +152,7 @@ class Service : private TransportHandler {
   bool m_rendererFailed = false;           ///< and the daemon ends
   double m_aloneSince = 0.0;               ///< [s] no client since then
 
-  // Written by begin() too, and not looked at before setReady(true): m_view, m_viewEdits, m_takingUp.
+  // Written by begin() too, and not looked at before m_begun: m_view, m_viewEdits, m_takingUp.
   View m_view;                             ///< as the edits sent so far leave it; completes lenses of camera edits
   std::set<std::pair<ConnectionId, uint32_t>> m_viewEdits;  ///< client and seq of those that were not answered yet
   std::map<std::pair<ConnectionId, uint32_t>, std::string_view> m_unsaid;  ///< the same: what their places have in front

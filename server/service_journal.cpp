@@ -55,6 +55,7 @@ KeptPlace keptPlaceOf(const Error& error) {
 void Service::begin(const View& view, const std::vector<protocol::ClientMessage>& kept) {
   m_view = view;
   takeUp(kept);
+  m_begun = true;
 }
 
 void Service::takeUp(const std::vector<protocol::ClientMessage>& messages) {

@@ -125,7 +125,9 @@ void Service::routeReplies() {
     if (session && session->unanswered > 0) --session->unanswered;
     std::visit(ReplyHandler{*this, session}, reply);
   }
-  for (const ErrorReply& failed : m_loader->takeFailed()) {
+  // An image of the journal may fail before the rest of it was asked for.
+  const std::vector<ErrorReply> failures = m_begun ? m_loader->takeFailed() : std::vector<ErrorReply>();
+  for (const ErrorReply& failed : failures) {
     ClientSession* session = find(failed.to.client);
     if (session && session->unanswered > 0) --session->unanswered;
     ReplyHandler{*this, session}(failed);
