@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "renderer/scene/node_order.hpp"
 
@@ -70,14 +69,10 @@ bool same(const View& a, const View& b) {
 class Batch {
  public:
   Batch(Scene& scene, ResolveSettings& resolve)
-      : m_scene(scene),
-        m_resolve(resolve),
-        m_environment(scene.environment),
-        m_view(scene.view),
-        m_resolveBefore(resolve) {}
+      : m_scene(scene), m_resolve(resolve), m_before{{}, {}, {}, scene.environment, scene.view, resolve} {}
 
   void operator()(const SetMaterial& e) {
-    Material& m = touch(m_materials, m_scene.materials, e.material);
+    Material& m = touch(m_before.materials, m_scene.materials, e.material);
     assign(m.baseColor, e.baseColor);
     assign(m.metallic, e.metallic);
     assign(m.roughness, e.roughness);
@@ -97,7 +92,7 @@ class Batch {
   }
 
   void operator()(const SetLight& e) {
-    Light& light = touch(m_lights, m_scene.lights, e.light);
+    Light& light = touch(m_before.lights, m_scene.lights, e.light);
     assign(light.color, e.color);
     assign(light.intensity, e.intensity);
     assign(light.range, e.range);
@@ -108,7 +103,7 @@ class Batch {
   void operator()(const SetNodeTransform& e) {
     Node& node = m_scene.nodes[e.node];
     Transform& t = node.parentFromLocal;
-    m_transforms.try_emplace(e.node, t);
+    m_before.transforms.try_emplace(e.node, t);
     if (t.matrix && (e.rotation || e.scale))
       t.matrix.reset();  // TRS, which holds the nearest decomposition, takes over
     assign(t.translation, e.translation);
@@ -131,26 +126,31 @@ class Batch {
   void operator()(const SetTechnique&) {}
   void operator()(const SetImageSize&) {}
 
+  AppliedEdits take() {
+    ChangeSet found = changes();
+    return {std::move(found), std::move(m_before)};
+  }
+
+ private:
   ChangeSet changes() const {
     ChangeSet set;
-    for (const auto& [index, before] : m_materials) {
+    for (const auto& [index, before] : m_before.materials) {
       const Material& now = m_scene.materials[index];
       if (same(before, now)) continue;
       set.materials.push_back(index);
       if (before.emission != now.emission) set.emissive.push_back(index);
     }
-    for (const auto& [index, before] : m_lights) {
+    for (const auto& [index, before] : m_before.lights) {
       if (!same(before, m_scene.lights[index])) set.lights.push_back(index);
     }
     set.nodes = movedNodes();
-    set.environment = !same(m_environment, m_scene.environment);
-    set.environmentImage = !same(m_environment.image, m_scene.environment.image);
-    set.view = !same(m_view, m_scene.view);
-    set.resolve = m_resolveBefore != m_resolve;
+    set.environment = !same(m_before.environment, m_scene.environment);
+    set.environmentImage = !same(m_before.environment.image, m_scene.environment.image);
+    set.view = !same(m_before.view, m_scene.view);
+    set.resolve = m_before.resolve != m_resolve;
     return set;
   }
 
- private:
   template <class T>
   static T& touch(std::map<uint32_t, T>& before, std::vector<T>& items, uint32_t index) {
     before.try_emplace(index, items[index]);
@@ -159,7 +159,7 @@ class Batch {
 
   std::vector<uint32_t> movedNodes() const {
     std::vector<uint32_t> moved;
-    for (const auto& [index, before] : m_transforms) {
+    for (const auto& [index, before] : m_before.transforms) {
       if (!same(before, m_scene.nodes[index].parentFromLocal)) moved.push_back(index);
     }
     std::vector<bool> seen(m_scene.nodes.size(), false);
@@ -176,12 +176,7 @@ class Batch {
 
   Scene& m_scene;
   ResolveSettings& m_resolve;
-  const Environment m_environment;
-  const View m_view;
-  const ResolveSettings m_resolveBefore;
-  std::map<uint32_t, Material> m_materials;
-  std::map<uint32_t, Light> m_lights;
-  std::map<uint32_t, Transform> m_transforms;
+  Overwritten m_before;
 };
 
 }  // namespace
@@ -208,10 +203,19 @@ CostClass ChangeSet::cost() const {
   return resolve ? CostClass::displayOnly : CostClass::none;
 }
 
-ChangeSet apply(Scene& scene, ResolveSettings& resolve, const std::vector<Edit>& edits) {
+AppliedEdits apply(Scene& scene, ResolveSettings& resolve, const std::vector<Edit>& edits) {
   Batch batch(scene, resolve);
   for (const Edit& edit : edits) std::visit(batch, edit);
-  return batch.changes();
+  return batch.take();
+}
+
+void takeBack(Scene& scene, ResolveSettings& resolve, const Overwritten& before) {
+  for (const auto& [index, material] : before.materials) scene.materials[index] = material;
+  for (const auto& [index, light] : before.lights) scene.lights[index] = light;
+  for (const auto& [index, transform] : before.transforms) scene.nodes[index].parentFromLocal = transform;
+  scene.environment = before.environment;
+  scene.view = before.view;
+  resolve = before.resolve;
 }
 
 }  // namespace limn

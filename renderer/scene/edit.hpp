@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -100,8 +101,26 @@ Result<void> validate(const Scene& scene, const Edit& edit);
 /// The same of one edit of a batch, against the scene as the edits before it, which must be valid, would leave it.
 Result<void> validate(const Scene& scene, std::span<const Edit> batch, size_t index);
 
+/// What a batch of edits found where it wrote.
+struct Overwritten {
+  std::map<uint32_t, Material> materials;     ///< by index, as the others
+  std::map<uint32_t, Light> lights;
+  std::map<uint32_t, Transform> transforms;   ///< of nodes
+  Environment environment;
+  View view;
+  ResolveSettings resolve;
+};
+
+struct AppliedEdits {
+  ChangeSet changes;
+  Overwritten before;
+};
+
 /// Applies the scene part of a batch. All edits were validated. Values that equal the present ones change nothing and
 /// are not in the ChangeSet. Sequential: the later edit of one field wins.
-ChangeSet apply(Scene& scene, ResolveSettings& resolve, const std::vector<Edit>& edits);
+AppliedEdits apply(Scene& scene, ResolveSettings& resolve, const std::vector<Edit>& edits);
+
+/// Puts back what the batch that was applied last overwrote.
+void takeBack(Scene& scene, ResolveSettings& resolve, const Overwritten& before);
 
 }  // namespace limn

@@ -61,6 +61,10 @@ CostClass amend(FilmSetup& setup, const SetTechnique& edit) {
   return cost;
 }
 
+bool asksForSetup(const Edit& edit) {
+  return std::holds_alternative<SetImageSize>(edit) || std::holds_alternative<SetTechnique>(edit);
+}
+
 }  // namespace
 
 Result<void> Session::Impl::drainMailbox() {
@@ -118,13 +122,15 @@ Result<Session::Impl::SetupOutcome> Session::Impl::applySetup(const EditRequest&
     const auto* chosen = std::get_if<SetTechnique>(&request.edits[i]);
     if (size) std::tie(wanted.width, wanted.height) = std::tie(size->width, size->height);
     if (chosen) outcome.parameterCost = std::max(outcome.parameterCost, amend(wanted, *chosen));
-    if (size || chosen) place = "/edits/" + std::to_string(i);
+    if (asksForSetup(request.edits[i])) place = "/edits/" + std::to_string(i);
   }
   outcome.sizeChanged = wanted.width != before.width || wanted.height != before.height;
   if (wanted == before) return outcome;
-  if (auto done = redoPending(); !done) return done.error();
   const Result<void> taken = takeSetup(wanted, planRestart({}, outcome.parameterCost, outcome.sizeChanged).cost);
-  if (taken) return outcome;
+  if (taken) {
+    outcome.before = before;
+    return outcome;
+  }
   if (taken.error().code == "device-lost") return taken.error();
   if (setup() != before)
     if (auto restored = restoreSetup(before); !restored) return restored.error();
@@ -133,6 +139,9 @@ Result<Session::Impl::SetupOutcome> Session::Impl::applySetup(const EditRequest&
 }
 
 Result<void> Session::Impl::handle(EditRequest& request) {
+  // Another setup is tried on what surely stays.
+  if (std::any_of(request.edits.begin(), request.edits.end(), asksForSetup))
+    if (auto done = redoPending(); !done) return done;
   for (size_t i = 0; i < request.edits.size(); ++i)
     if (auto checked = checkEdit(request.edits, i); !checked) {
       Error answer = checked.error();
@@ -141,21 +150,15 @@ Result<void> Session::Impl::handle(EditRequest& request) {
       return {};
     }
   const std::string before = technique->info().name;
-  const Result<SetupOutcome> setUp = applySetup(request);
+  Result<SetupOutcome> setUp = applySetup(request);
   if (!setUp) return setUp.error();
   if (setUp->refusal) {
     replies.push(ErrorReply{request.from, *setUp->refusal});
     return {};
   }
-  const ChangeSet changes = apply(scene, resolve, request.edits);
+  AppliedEdits applied = apply(scene, resolve, request.edits);
   forgetSummary(request.edits);
-  const RestartPlan plan = planRestart(changes, setUp->parameterCost, setUp->sizeChanged);
-  if (plan.syncScene) ++sceneRevision;
-  if (changes.view || setUp->sizeChanged) ++viewRevision;
-  acknowledge(request.from, request.receivedAt);
-  ++status.editsApplied;
-  unite(pending, changes);
-  replies.push(EditAck{request.from, plan.cost, sceneRevision, viewRevision, false, before});
+  pending.push_back({std::move(request), std::move(applied), setUp.take(), before});
   return {};
 }
 
@@ -198,16 +201,66 @@ void Session::Impl::acknowledge(const Origin& from, double receivedAt) {
   editReceivedAt = receivedAt > 0.0 ? receivedAt : nowSeconds();
 }
 
+void Session::Impl::accept(const PendingEdit& edit) {
+  const ChangeSet& changes = edit.applied.changes;
+  const RestartPlan plan = planRestart(changes, edit.setup.parameterCost, edit.setup.sizeChanged);
+  if (plan.syncScene) ++sceneRevision;
+  if (changes.view || edit.setup.sizeChanged) ++viewRevision;
+  acknowledge(edit.request.from, edit.request.receivedAt);
+  ++status.editsApplied;
+  knownSummary = nullptr;  // of the revisions before
+  replies.push(EditAck{edit.request.from, plan.cost, sceneRevision, viewRevision, false, edit.technique});
+}
+
+// Which of several edits asks for too much cannot be told: together they did.
+void Session::Impl::refuse(const EditRequest& request, const Error& why) {
+  const std::string place = request.edits.size() == 1 ? "/edits/0" : "seq " + std::to_string(request.from.seq) + " /edits";
+  replies.push(ErrorReply{request.from, {why.code, why.message, place}});
+}
+
+// Requests of one turn are redone together, and answered when that is done. Where the device has no room each is tried alone, in
+// order: one that is refused is as if it had never come, and takes no other along.
 Result<void> Session::Impl::redoPending() {
-  const ChangeSet todo = std::exchange(pending, {});
-  const RestartPlan plan = planRestart(todo, CostClass::none, false);
+  std::vector<PendingEdit> edits = std::exchange(pending, {});
+  ChangeSet changes;
+  for (const PendingEdit& edit : edits) unite(changes, edit.applied.changes);
+  const Result<void> redone = redo(changes);
+  if (redone) {
+    for (const PendingEdit& edit : edits) accept(edit);
+    return {};
+  }
+  if (redone.error().code == "device-lost") return redone;
+  if (auto restored = takeBackEdits(edits); !restored) return restored;
+  if (edits.size() == 1) {
+    refuse(edits[0].request, redone.error());
+    return {};
+  }
+  for (PendingEdit& edit : edits) {
+    if (auto done = handle(edit.request); !done) return done;
+    if (auto done = redoPending(); !done) return done;
+  }
+  return {};
+}
+
+Result<void> Session::Impl::redo(const ChangeSet& changes) {
+  const RestartPlan plan = planRestart(changes, CostClass::none, false);
   if (plan.syncScene)
-    if (auto done = syncScene(todo); !done) return done;
+    if (auto done = syncScene(changes); !done) return done;
   if (plan.writeCamera)
     if (auto done = writeCamera(); !done) return done;
   if (plan.restartFilm) return restartFilm(plan.cost);
   showAgain |= plan.showAgain;
   return {};
+}
+
+// Another setup is of the first edit alone: those before it were redone when it was taken.
+Result<void> Session::Impl::takeBackEdits(std::span<const PendingEdit> edits) {
+  for (auto edit = edits.rbegin(); edit != edits.rend(); ++edit) {
+    takeBack(scene, resolve, edit->applied.before);
+    forgetSummary(edit->request.edits);
+  }
+  if (auto shown = showScene(); !shown) return shown;
+  return edits.front().setup.before ? restoreSetup(*edits.front().setup.before) : Result<void>{};
 }
 
 }  // namespace limn

@@ -61,12 +61,24 @@ struct Session::Impl {
   struct SetupOutcome {
     CostClass parameterCost = CostClass::none;
     bool sizeChanged = false;
+    std::optional<FilmSetup> before;   ///< where another one was taken
     std::optional<Error> refusal;
+  };
+  /// In the scene, while the derived data are not redone yet and may turn out to have no room on the device.
+  struct PendingEdit {
+    EditRequest request;
+    AppliedEdits applied;
+    SetupOutcome setup;
+    std::string technique;             ///< that was in use when it came
   };
   Result<SetupOutcome> applySetup(const EditRequest& request);
   Result<void> checkEdit(std::span<const Edit> batch, size_t index) const;
+  void accept(const PendingEdit& edit);
+  void refuse(const EditRequest& request, const Error& why);
   void acknowledge(const Origin& from, double receivedAt);
   Result<void> redoPending();
+  Result<void> redo(const ChangeSet& changes);
+  Result<void> takeBackEdits(std::span<const PendingEdit> edits);
 
   // session_publish.cpp
   Result<void> publishIfDue();
@@ -138,7 +150,7 @@ struct Session::Impl {
   std::unique_ptr<WarmUpScene> warmUpScene;
   double warmUpSeconds = 0.0;           ///< spent on coldTechniques since planWarmUp()
 
-  ChangeSet pending;                    ///< applied to the scene; derived data are not redone yet
+  std::vector<PendingEdit> pending;     ///< in the order they came
   Progress progress;
   FilmError error;
   FilmStatistics::Means means;

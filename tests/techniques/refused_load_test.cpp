@@ -1,4 +1,4 @@
-// What the device cannot hold, a scene or a picture or a technique, is refused, and what was before it is rendered on as if nothing had
+// What the device cannot hold, a scene or a picture or a technique or the lights that an edit makes, is refused, and what was before it is rendered on as if nothing had
 // been asked.
 #include <gtest/gtest.h>
 
@@ -33,6 +33,23 @@ std::unique_ptr<vk::Device> smallDevice() {
   options.largestBuffer = kLargestBuffer;
   return must(vk::Device::open(options));
 }
+
+/// Plain, and a ball whose triangles fit where as many lights do not.
+struct BallScene {
+  Scene scene;
+  uint32_t ball = 0;  ///< material
+
+  BallScene() {
+    SceneBuilder b;
+    b.scene = plainScene();
+    ball = b.diffuse(glm::vec3(0.5f));
+    b.sphere(ball, {0, 0, 0}, 0.5f, 64);
+    scene = b.scene;
+  }
+  SetMaterial glow() const { return {.material = ball, .emission = glm::vec3(1.0f)}; }
+};
+
+SetLight intensity(float value) { return {.intensity = value}; }
 
 /// The error of the one reply there is, which refuses `seq`; an empty one, and a failure, where there is another.
 Error refusalOf(TestSession& session, uint32_t seq) {
@@ -83,6 +100,102 @@ TEST(RefusedSetup, KeepsSizeTechniqueParametersAndPicture) {
     EXPECT_EQ(session.film().width, 48u);
   }
   EXPECT_EQ(log->count(), 0u);
+}
+
+TEST(RefusedEdit, KeepsTheSceneAndItsPicture) {
+  const auto small = smallDevice();
+  const auto log = small->validationLog();
+  {
+    const BallScene made;
+    TestSession session(made.scene, smallPicture(), *small);
+    session.apply({intensity(1.5f)});
+    session.run(3);
+    const uint64_t scene = session.scene().hash(), film = session.hash(), applied = session.status().editsApplied;
+
+    const uint32_t seq = session.edit({made.glow()});
+    session.run(3);
+    EXPECT_EQ(refusalOf(session, seq).place, "/edits/0");
+    EXPECT_EQ(session.scene().hash(), scene);
+    EXPECT_EQ(session.hash(), film) << "the same samples of the same scene";
+    EXPECT_EQ(session.status().editsApplied, applied);
+
+    const EditAck next = session.apply({intensity(2.5f)});
+    EXPECT_EQ(next.cost, CostClass::relight);
+    EXPECT_EQ(next.sceneRevision, 3u) << "the refused edit made no revision";
+    session.run(3);
+    Scene wanted = made.scene;
+    wanted.lights[0].intensity = 2.5f;
+    EXPECT_EQ(session.hash(), freshHash(wanted, smallPicture(), 3));
+  }
+  EXPECT_EQ(log->count(), 0u);
+}
+
+TEST(RefusedEdit, TakesNoEditOfTheSameTurnAlong) {
+  const auto small = smallDevice();
+  const BallScene made;
+  TestSession session(made.scene, smallPicture(), *small);
+  session.run(1);
+  const uint32_t before = session.edit({intensity(1.5f)}), refused = session.edit({made.glow()});
+  const uint32_t after = session.edit({SetMaterial{.material = 0, .baseColor = glm::vec4(0.2f, 0.3f, 0.4f, 1.0f)}}, 2);
+  session.run(3);
+  const std::vector<Reply> replies = session.takeReplies();
+  ASSERT_EQ(replies.size(), 3u);
+  ASSERT_TRUE(std::holds_alternative<EditAck>(replies[0]) && std::holds_alternative<ErrorReply>(replies[1]) &&
+              std::holds_alternative<EditAck>(replies[2]));
+  const auto& first = std::get<EditAck>(replies[0]);
+  const auto& last = std::get<EditAck>(replies[2]);
+  EXPECT_EQ(first.to.seq, before);
+  EXPECT_EQ(first.cost, CostClass::relight);
+  EXPECT_EQ(std::get<ErrorReply>(replies[1]).to.seq, refused);
+  EXPECT_EQ(last.to.seq, after);
+  EXPECT_EQ(last.cost, CostClass::regather);
+  EXPECT_EQ(last.sceneRevision, first.sceneRevision + 1);
+  Scene wanted = made.scene;
+  wanted.lights[0].intensity = 1.5f;
+  wanted.materials[0].baseColor = {0.2f, 0.3f, 0.4f, 1.0f};
+  EXPECT_EQ(session.hash(), freshHash(wanted, smallPicture(), 3));
+}
+
+TEST(RefusedEdit, OfABatchTakesAllOfItBack) {
+  const auto small = smallDevice();
+  const BallScene made;
+  TestSession session(made.scene, smallPicture(), *small);
+  session.run(3);
+  const uint64_t film = session.hash();
+  SetTechnique shallow;
+  shallow.parameters = {{"maxBounces", 1.0}};
+  const uint32_t seq = session.edit({SetImageSize{48, 40}, shallow, SetNodeTransform{.node = 0, .translation = glm::dvec3(0, -1, 0)},
+                                     SetEnvironment{.radiance = glm::vec3(1.0f)}, made.glow(), SetResolve{.exposure = 2.0f}});
+  session.run(3);
+  EXPECT_EQ(refusalOf(session, seq).place, "seq " + std::to_string(seq) + " /edits");
+  EXPECT_EQ(session.scene().hash(), made.scene.hash());
+  EXPECT_EQ(session.hash(), film) << "the same samples of the same size and scene";
+  session.ask(DescribeRequest{});
+  session.run(3);
+  const auto described = session.take<DescribeReply>();
+  ASSERT_EQ(described.size(), 1u);
+  EXPECT_EQ(described[0].scene->width, 32u);
+  EXPECT_EQ(described[0].scene->resolve.exposure, 0.0f);
+  EXPECT_EQ(described[0].scene->viewRevision, 1u);
+}
+
+TEST(RefusedEdit, OfABatchWithASizeLeavesNothingToTheNextSetup) {
+  const auto small = smallDevice();
+  const BallScene made;
+  TestSession session(made.scene, smallPicture(), *small);
+  session.run(1);
+  SetTechnique shallow;
+  shallow.parameters = {{"maxBounces", 1.0}};
+  const uint32_t refused = session.edit({SetImageSize{48, 40}, made.glow()}), taken = session.edit({shallow});
+  session.run(3);
+  const std::vector<Reply> replies = session.takeReplies();
+  ASSERT_EQ(replies.size(), 2u);
+  ASSERT_TRUE(std::holds_alternative<ErrorReply>(replies[0]) && std::holds_alternative<EditAck>(replies[1]));
+  EXPECT_EQ(std::get<ErrorReply>(replies[0]).to.seq, refused);
+  EXPECT_EQ(std::get<EditAck>(replies[1]).to.seq, taken);
+  SessionConfig wanted = smallPicture();
+  wanted.parameters = shallow.parameters;
+  EXPECT_EQ(session.hash(), freshHash(made.scene, wanted, 3));
 }
 
 TEST(RefusedLoad, KeepsTheSceneItsPictureAndItsEdits) {

@@ -27,7 +27,7 @@ Scene smallScene() {
 ChangeSet applied(Scene& scene, const std::vector<Edit>& edits) {
   ResolveSettings resolve;
   for (const Edit& edit : edits) EXPECT_TRUE(validate(scene, edit).ok());
-  return apply(scene, resolve, edits);
+  return apply(scene, resolve, edits).changes;
 }
 
 std::string complaint(const Edit& edit) {
