@@ -101,15 +101,9 @@ class Batch {
   }
 
   void operator()(const SetNodeTransform& e) {
-    Node& node = m_scene.nodes[e.node];
-    Transform& t = node.parentFromLocal;
+    Transform& t = m_scene.nodes[e.node].parentFromLocal;
     m_before.transforms.try_emplace(e.node, t);
-    if (t.matrix && (e.rotation || e.scale))
-      t.matrix.reset();  // TRS, which holds the nearest decomposition, takes over
-    assign(t.translation, e.translation);
-    assign(t.scale, e.scale);
-    if (e.rotation) t.rotation = unit(*e.rotation);
-    if (t.matrix && e.translation) (*t.matrix)[3] = glm::dvec4(*e.translation, 1.0);
+    change(t, e);
   }
 
   void operator()(const SetEnvironment& e) {
@@ -207,6 +201,15 @@ AppliedEdits apply(Scene& scene, ResolveSettings& resolve, const std::vector<Edi
   Batch batch(scene, resolve);
   for (const Edit& edit : edits) std::visit(batch, edit);
   return batch.take();
+}
+
+void change(Transform& t, const SetNodeTransform& edit) {
+  if (t.matrix && (edit.rotation || edit.scale))
+    t.matrix.reset();  // TRS, which holds the nearest decomposition, takes over
+  assign(t.translation, edit.translation);
+  assign(t.scale, edit.scale);
+  if (edit.rotation) t.rotation = unit(*edit.rotation);
+  if (t.matrix && edit.translation) (*t.matrix)[3] = glm::dvec4(*edit.translation, 1.0);
 }
 
 void takeBack(Scene& scene, ResolveSettings& resolve, const Overwritten& before) {

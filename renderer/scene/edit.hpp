@@ -120,6 +120,9 @@ struct AppliedEdits {
 /// are not in the ChangeSet. Sequential: the later edit of one field wins.
 AppliedEdits apply(Scene& scene, ResolveSettings& resolve, const std::vector<Edit>& edits);
 
+/// The part of apply() that moves a node.
+void change(Transform& parentFromLocal, const SetNodeTransform& edit);
+
 /// Puts back what the batch that was applied last overwrote.
 void takeBack(Scene& scene, ResolveSettings& resolve, const Overwritten& before);
 

@@ -3,12 +3,12 @@
 #include <limits>
 
 #include "renderer/scene/edit.hpp"
+#include "renderer/scene/reach.hpp"
 
 namespace limn {
 namespace {
 
 constexpr float kUnbounded = std::numeric_limits<float>::max();
-constexpr double kFarthest = 1e15;  ///< [m]; beyond it double has lost the millimetre and float its squares
 constexpr float kMaxExposure = 64.0f;
 constexpr float kHalfPi = 1.5707964f;
 constexpr float kPi = 3.1415927f;

@@ -7,13 +7,12 @@
 #include "renderer/scene/gltf_document.hpp"
 #include "renderer/scene/gltf_materials.hpp"
 #include "renderer/scene/gltf_nodes.hpp"
+#include "renderer/scene/reach.hpp"
 #include "renderer/scene/scene_estimate.hpp"
 #include "renderer/scene/scene_needs.hpp"
 
 namespace limn {
 namespace {
-
-constexpr double kFarthest = 1e15;  ///< [m]
 
 void chooseView(Scene& scene, LoadReport& report) {
   for (uint32_t i = 0; i < scene.cameras.size(); ++i) {
@@ -60,11 +59,8 @@ void checkInstances(const Scene& scene, const LoadLimits& limits, LoadReport& re
 }
 
 void checkExtent(const Scene& scene) {
-  const Bounds bounds = worldBounds(scene);
-  for (int c = 0; c < 3; ++c) {
-    const bool inside = bounds.low[c] >= -kFarthest && bounds.high[c] <= kFarthest;
-    if (!inside) gltf::fail("out-of-range", "the scene reaches farther than 1e15 from the origin", "/nodes");
-  }
+  if (!withinReach(worldBounds(scene)))
+    gltf::fail("out-of-range", "the scene reaches farther than 1e15 from the origin", "/nodes");
 }
 
 LoadedScene load(const std::filesystem::path& file, const LoadOptions& options) {

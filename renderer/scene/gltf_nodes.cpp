@@ -6,11 +6,10 @@
 
 #include "renderer/scene/gltf_accessors.hpp"
 #include "renderer/scene/gltf_meshes.hpp"
+#include "renderer/scene/reach.hpp"
 
 namespace limn::gltf {
 namespace {
-
-constexpr double kFarthest = 1e15;  ///< [m]; as in gltf_meshes
 
 /// The roots of the scene that is shown: the default one, else the first, else every node without a parent.
 std::vector<uint32_t> shownRoots(Document& document) {
@@ -97,12 +96,8 @@ class NodeReader {
       const uint32_t i = open.back();
       open.pop_back();
       m_world[i] = m_parent[i] < 0 ? m_local[i].toMatrix() : m_world[size_t(m_parent[i])] * m_local[i].toMatrix();
-      const glm::dmat4& w = m_world[i];
-      for (int c = 0; c < 4; ++c) {
-        const double length = glm::length(glm::dvec3(w[c]));
-        if (!(length <= kFarthest))
-          m_nodes[i].fail("out-of-range", "the node's place or size in the world is beyond 1e15");
-      }
+      if (!withinReach(m_world[i]))
+        m_nodes[i].fail("out-of-range", "the node's place or size in the world is beyond 1e15");
       for (const int child : m_document.model.nodes[i].children) open.push_back(uint32_t(child));
     }
   }

@@ -131,6 +131,13 @@ Bounds worldBounds(const Scene& scene) {
   return {box.low, box.high};
 }
 
+Bounds worldBounds(const Mesh& mesh, const glm::dmat4& worldFromNode) {
+  LocalBox box;
+  addVertices(box, mesh, worldFromNode);
+  if (box.empty()) return {glm::dvec3(worldFromNode[3]), glm::dvec3(worldFromNode[3])};
+  return {box.low, box.high};
+}
+
 View framingView(const Bounds& bounds, const Camera& lens) {
   const double radius = std::max(bounds.radius(), 1e-9 * (1.0 + glm::length(bounds.center())));
   // A little from the right and above, at the distance where the bounding sphere fits the smaller field of view.

@@ -159,6 +159,8 @@ struct Bounds {
   double radius() const { return glm::length(high - low) * 0.5; }
 };
 Bounds worldBounds(const Scene& scene);
+/// Of the triangles of one mesh; the node's place where it has none.
+Bounds worldBounds(const Mesh& mesh, const glm::dmat4& worldFromNode);
 
 /// A view that frames the whole scene.
 View framingView(const Bounds& bounds, const Camera& lens);

@@ -4,6 +4,7 @@
 
 #include "renderer/base/clock.hpp"
 #include "renderer/scene/clean_environment.hpp"
+#include "renderer/scene/reach.hpp"
 #include "renderer/session/session_impl.hpp"
 
 namespace limn {
@@ -84,6 +85,16 @@ Result<void> Session::Impl::drainMailbox() {
   return redoPending();
 }
 
+Result<void> Session::Impl::checkBatch(std::span<const Edit> batch) const {
+  for (size_t i = 0; i < batch.size(); ++i)
+    if (auto checked = checkEdit(batch, i); !checked) {
+      Error answer = checked.error();
+      answer.place = "/edits/" + std::to_string(i) + (answer.place.empty() ? "" : "/" + answer.place);
+      return answer;
+    }
+  return validateReach(scene, batch);
+}
+
 // An edit is checked against what the edits before it in its batch would leave.
 Result<void> Session::Impl::checkEdit(std::span<const Edit> batch, size_t index) const {
   const Edit& edit = batch[index];
@@ -142,13 +153,10 @@ Result<void> Session::Impl::handle(EditRequest& request) {
   // Another setup is tried on what surely stays.
   if (std::any_of(request.edits.begin(), request.edits.end(), asksForSetup))
     if (auto done = redoPending(); !done) return done;
-  for (size_t i = 0; i < request.edits.size(); ++i)
-    if (auto checked = checkEdit(request.edits, i); !checked) {
-      Error answer = checked.error();
-      answer.place = "/edits/" + std::to_string(i) + (answer.place.empty() ? "" : "/" + answer.place);
-      replies.push(ErrorReply{request.from, answer});
-      return {};
-    }
+  if (auto checked = checkBatch(request.edits); !checked) {
+    replies.push(ErrorReply{request.from, checked.error()});
+    return {};
+  }
   const std::string before = technique->info().name;
   Result<SetupOutcome> setUp = applySetup(request);
   if (!setUp) return setUp.error();

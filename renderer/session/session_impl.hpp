@@ -72,6 +72,7 @@ struct Session::Impl {
     std::string technique;             ///< that was in use when it came
   };
   Result<SetupOutcome> applySetup(const EditRequest& request);
+  Result<void> checkBatch(std::span<const Edit> batch) const;
   Result<void> checkEdit(std::span<const Edit> batch, size_t index) const;
   void accept(const PendingEdit& edit);
   void refuse(const EditRequest& request, const Error& why);

@@ -156,6 +156,22 @@ TEST(RefusedEdit, TakesNoEditOfTheSameTurnAlong) {
   EXPECT_EQ(session.hash(), freshHash(wanted, smallPicture(), 3));
 }
 
+// Every transform is one that a node may have.
+TEST(RefusedEdit, NodesDoNotReachTooFarTogether) {
+  const RichScene made = richScene();
+  TestSession session(made.scene, smallPicture());
+  const uint32_t child = made.scene.nodes[made.metalNode].children.at(0);
+  const SetNodeTransform outer{.node = made.metalNode, .scale = glm::dvec3(1e12)}, inner{.node = child, .scale = glm::dvec3(1e12)};
+  const uint32_t seq = session.edit({SetResolve{.exposure = 1.0f}, outer, inner});
+  session.run(1);
+  const auto refused = session.take<ErrorReply>();
+  ASSERT_EQ(refused.size(), 1u);
+  EXPECT_EQ(refused[0].to.seq, seq);
+  EXPECT_EQ(refused[0].error.code, "out-of-range");
+  EXPECT_EQ(refused[0].error.place, "/edits/2");
+  EXPECT_EQ(session.scene().hash(), made.scene.hash());
+}
+
 TEST(RefusedEdit, OfABatchTakesAllOfItBack) {
   const auto small = smallDevice();
   const BallScene made;

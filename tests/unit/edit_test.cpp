@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/scene/reach.hpp"
+
 namespace limn {
 namespace {
 
@@ -328,6 +330,33 @@ TEST(EditValidate, NodeRanges) {
   EXPECT_EQ(complaint(SetNodeTransform{.rotation = glm::dquat(nan, 0, 0, 0)}), "rotation");
   EXPECT_EQ(complaint(SetNodeTransform{.scale = glm::dvec3(1, 0, 1)}), "scale");
   EXPECT_EQ(complaint(SetNodeTransform{.scale = glm::dvec3(-1, 1, 1)}), "");
+}
+
+TEST(EditValidate, TransformsOfAChainReachNoFartherTogetherThanASceneMay) {
+  Scene scene = smallScene();  // 0 above 1 above 2 and 3; 4 alone
+  Primitive triangle;
+  triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 10, 0}};
+  triangle.indices = {0, 1, 2};
+  scene.meshes.push_back({"triangle", {triangle}});
+  scene.nodes[3].mesh = 0;
+  const auto complaintOf = [&](const std::vector<Edit>& batch) {
+    const Result<void> result = validateReach(scene, batch);
+    return result ? std::string() : result.error().place;
+  };
+  const auto grow = [](uint32_t node, double scale) { return SetNodeTransform{.node = node, .scale = glm::dvec3(scale)}; };
+  const Edit huge = grow(0, 1e12), lesser = grow(1, 1e2), tooMuch = grow(1, 1e4), other = grow(4, 1e12), dim = SetLight{.intensity = 0.5f};
+  EXPECT_EQ(complaintOf({}), "");
+  EXPECT_EQ(complaintOf({dim, huge, other}), "") << "far apart, one is as large as the other";
+  EXPECT_EQ(complaintOf({huge, lesser}), "") << "ten metres of a mesh are 1e15 then";
+  EXPECT_EQ(complaintOf({huge, dim, tooMuch}), "/edits/2");
+  EXPECT_EQ(complaintOf({tooMuch, huge}), "/edits/0") << "the nearest one above the node";
+  EXPECT_EQ(complaintOf({huge, grow(3, 1e3)}), "/edits/1") << "the mesh, of a node that is in reach itself";
+  EXPECT_EQ(complaintOf({huge, grow(2, 1e3)}), "") << "a node without one";
+  EXPECT_EQ(complaintOf({huge, tooMuch, lesser}), "") << "as the whole batch leaves it";
+  EXPECT_EQ(complaintOf({huge, SetNodeTransform{.node = 1, .translation = glm::dvec3(0, 0, 1e4)}}), "/edits/1");
+  scene.nodes[1].parentFromLocal.scale = glm::dvec3(1e12);
+  EXPECT_EQ(complaintOf({grow(4, 2.0)}), "") << "what does not move is not asked about";
+  EXPECT_EQ(complaintOf({grow(0, 1e4)}), "/edits/0") << "a child that moves along";
 }
 
 TEST(EditValidate, EnvironmentViewAndResolve) {
