@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <numeric>
+#include <string>
 
 #include "renderer/base/clock.hpp"
 #include "renderer/vk/transfer.hpp"
@@ -28,6 +29,16 @@ glm::vec4 withWord(const glm::vec3& v, uint32_t word) { return {v, std::bit_cast
 uint64_t bytesOf(const BvhBlock& block) {
   return sizeof block + block.tree.nodes.size() * sizeof(BvhNode) + block.tree.items.size() * sizeof(uint32_t) +
          block.triangles.size() * sizeof(glm::vec4);
+}
+
+// Bases count nodes and triangles in 24 bits. Every node has two children or more, but for those of single triangles, so that
+// there are at most as many nodes as triangles and blocks.
+Result<void> checkCounts(std::span<const TriangleBlock> blocks) {
+  uint64_t triangles = 0;
+  for (const TriangleBlock& block : blocks) triangles += block.corners.size() / 3;
+  if (triangles + blocks.size() <= kBvhBaseMask) return {};
+  return Error{"limit", std::to_string(triangles) + " triangles in " + std::to_string(blocks.size()) + " objects are more than the " +
+                            std::to_string(kBvhBaseMask) + " that a hierarchy counts", ""};
 }
 
 BvhBlock buildBlock(const BvhBuilder& builder, const TriangleBlock& source) {
@@ -61,6 +72,7 @@ BvhBlock buildBlock(const BvhBuilder& builder, const TriangleBlock& source) {
 
 Result<void> SceneBvh::update(vk::Device& device, std::span<const TriangleBlock> blocks,
                               std::span<const uint32_t> changed) {
+  if (auto counted = checkCounts(blocks); !counted) return counted;
   const double start = nowSeconds();
   std::vector<uint32_t> rebuild(changed.begin(), changed.end());
   if (blocks.size() != m_blocks.size() || !m_nodes) {
@@ -80,9 +92,7 @@ Result<void> SceneBvh::update(vk::Device& device, std::span<const TriangleBlock>
     heights.push_back(m_blocks[i].tree.height);
   }
   const WideBvh top = widenTop(m_builder.build(boxes, 1), boxes, heights);
-  auto tables = layOut(top, blockOfItem, m_blocks);
-  if (!tables) return tables.error();
-  if (auto stored = store(device, *tables); !stored) return stored;
+  if (auto stored = store(device, layOut(top, blockOfItem, m_blocks)); !stored) return stored;
   m_stats.hostBytes = 0;
   for (const BvhBlock& block : m_blocks) m_stats.hostBytes += bytesOf(block);
   m_stats.blocksRebuilt = uint32_t(rebuild.size());

@@ -36,7 +36,8 @@ class SceneBvh {
   /// Makes the device's tables those of `blocks`. Only the blocks named in `changed` are read and rebuilt, with the
   /// top; all of them the first time and when their number differs. The buffers may be new ones afterwards. Waits for
   /// the device.
-  /// Errors: "limit" (more triangles than the device's texel buffers hold), "out-of-memory", "device-lost".
+  /// Errors: "limit" (more triangles than a hierarchy counts, or than the device's texel buffers hold), "out-of-memory",
+  /// "device-lost".
   Result<void> update(vk::Device& device, std::span<const TriangleBlock> blocks, std::span<const uint32_t> changed);
 
   /// Texel buffers for the bindings bvhNodes (BVH_NODE_SAMPLER) and bvhTriangles. Valid after the first update.

@@ -1,7 +1,6 @@
 #include "renderer/visibility/bvh_layout.hpp"
 
 #include <algorithm>
-#include <string>
 
 namespace limn {
 namespace {
@@ -17,14 +16,11 @@ BvhNode moved(BvhNode node, uint32_t firstNode, uint32_t firstTriangle) {
 
 }  // namespace
 
-Result<BvhTables> layOut(const WideBvh& top, std::span<const uint32_t> blockOfItem, std::span<const BvhBlock> blocks) {
+BvhTables layOut(const WideBvh& top, std::span<const uint32_t> blockOfItem, std::span<const BvhBlock> blocks) {
   uint64_t nodeCount = top.nodes.size(), triangleTexels = 0;
   for (const uint32_t index : blockOfItem) {
     nodeCount += blocks[index].tree.nodes.size() - 1;
     triangleTexels += blocks[index].triangles.size();
-  }
-  if (nodeCount > kBvhBaseMask || triangleTexels / kBvhTriangleTexels > kBvhBaseMask) {
-    return Error{"limit", "the scene has more than 16 million triangles in its BVH", ""};
   }
 
   BvhTables tables;

@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "renderer/base/result.hpp"
 #include "renderer/visibility/bvh_wide.hpp"
 
 namespace limn {
@@ -23,7 +22,7 @@ struct BvhTables {
 };
 
 /// Puts the blocks' trees under the top tree: the root, the top's nodes, then block after block. `blockOfItem` names
-/// the block of each item of `top`. Errors: "limit" (more nodes or triangles than bases can count).
-Result<BvhTables> layOut(const WideBvh& top, std::span<const uint32_t> blockOfItem, std::span<const BvhBlock> blocks);
+/// the block of each item of `top`.
+BvhTables layOut(const WideBvh& top, std::span<const uint32_t> blockOfItem, std::span<const BvhBlock> blocks);
 
 }  // namespace limn

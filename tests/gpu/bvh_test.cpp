@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <memory>
 #include <numeric>
 
 #include "renderer/gpu/pass.hpp"
@@ -206,6 +207,19 @@ TEST_F(BvhTest, MovingAnObjectRebuildsItAlone) {
   must(bvh.update(device(), soup.blocks(), {}));
   EXPECT_EQ(bvh.stats().blocksRebuilt, 0u);
   EXPECT_EQ(content(bvh), content(fresh(soup)));
+}
+
+TEST_F(BvhTest, MoreTrianglesThanItCountsAreRefused) {
+  const size_t most = shared::kBvhBaseMask;
+  const auto corners = std::make_unique_for_overwrite<glm::vec3[]>(3 * (most + 1));  // never looked at
+  const std::vector<TriangleBlock> one{{{corners.get(), 3 * (most + 1)}, 0}};
+  const std::vector<TriangleBlock> two{{{corners.get(), 3 * (most / 2)}, 0}, {{corners.get(), 3 * (most / 2 + 1)}, uint32_t(most / 2)}};
+  for (const std::vector<TriangleBlock>& blocks : {one, two}) {
+    SceneBvh bvh;
+    const Result<void> updated = bvh.update(device(), blocks, {});
+    ASSERT_FALSE(updated.ok());
+    EXPECT_EQ(updated.error().code, "limit");
+  }
 }
 
 class BvhHistoryTest : public BvhTest, public testing::WithParamInterface<uint32_t> {};
