@@ -136,7 +136,7 @@ Result<Session::Impl::SetupOutcome> Session::Impl::applySetup(const EditRequest&
     if (asksForSetup(request.edits[i])) place = "/edits/" + std::to_string(i);
   }
   outcome.sizeChanged = wanted.width != before.width || wanted.height != before.height;
-  if (wanted == before) return outcome;
+  if (wanted == before) return SetupOutcome{};
   const Result<void> taken = takeSetup(wanted, planRestart({}, outcome.parameterCost, outcome.sizeChanged).cost);
   if (taken) {
     outcome.before = before;

@@ -100,6 +100,19 @@ std::vector<Row> rows() {
   };
 }
 
+TEST_F(Restart, ABatchThatUndoesItselfCostsNothing) {
+  SetTechnique few, many;
+  few.parameters = {{"maxBounces", 5.0}};
+  many.parameters = {{"maxBounces", 32.0}};
+  const Outcome parameter = outcomeOf({few, many}), size = outcomeOf({SetImageSize{48, 40}, SetImageSize{32, 32}});
+  const Outcome scene = outcomeOf({SetMaterial{.material = 0, .roughness = 0.9f}, SetMaterial{.material = 0, .roughness = rich().scene.materials[0].roughness}});
+  for (const Outcome& outcome : {parameter, size, scene}) {
+    EXPECT_EQ(outcome.ack.cost, CostClass::none);
+    EXPECT_EQ(outcome.restarts, 0u);
+    EXPECT_EQ(outcome.passesKept, kPasses);
+  }
+}
+
 TEST_F(Restart, EachEditCostsItsClassAndRedoesNoMore) {
   for (const Row& row : rows()) {
     SCOPED_TRACE(row.name);
