@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "renderer/film/compare.hpp"
+#include "renderer/gpu/work_groups.hpp"
 #include "renderer/vk/transfer.hpp"
 #include "shaders/shared/bindings.h"
 
@@ -143,7 +144,8 @@ Result<uint32_t> FilmStatistics::selectPixels(vk::Device& device, const Film& fi
   auto done = gpu::runNow(device, [&](vk::CommandRecorder& r) {
     for (uint32_t stage = 0; stage < 3; ++stage) {
       push.stage = stage;
-      m_select.record(r, bindings, push, stage == 1 ? 1 : tileCount);
+      const gpu::WorkGroups groups = gpu::groupsInRows(stage == 1 ? 1 : tileCount);
+      m_select.record(r, bindings, push, groups.x, groups.y);
       r.barrier();
     }
   });

@@ -48,7 +48,9 @@ void main() {
     placeTiles();
     return;
   }
-  uint tilesX = (push.width + 15u) / 16u, tile = gl_WorkGroupID.x, l = gl_LocalInvocationIndex;
+  uint tile = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  if (tile >= push.tileCount) return;
+  uint tilesX = (push.width + 15u) / 16u, l = gl_LocalInvocationIndex;
   // Morton order inside the tile keeps neighbours in one vector.
   uvec2 inTile = uvec2((l & 1u) | ((l >> 1) & 2u) | ((l >> 2) & 4u) | ((l >> 3) & 8u),
                        ((l >> 1) & 1u) | ((l >> 2) & 2u) | ((l >> 3) & 4u) | ((l >> 4) & 8u));

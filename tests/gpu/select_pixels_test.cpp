@@ -1,7 +1,10 @@
 // Which pixels still need samples, against the rule written again on the host, over random films.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "renderer/film/film_statistics.hpp"
+#include "renderer/gpu/work_groups.hpp"
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/film_shared.h"
 #include "tests/gpu/picture_fixture.hpp"
@@ -89,7 +92,8 @@ std::vector<uint32_t> selectedList(const FilmWords& film, const Rule& rule) {
   shared::SelectPush push{film.width, film.height, rule.minSamples, tiles, rule.threshold, 0, rule.meanLuminance};
   must(gpu::runNow(device, [&](vk::CommandRecorder& r) {
     for (push.stage = 0; push.stage < 3; ++push.stage) {
-      pass.record(r, bindings, push, push.stage == 1 ? 1 : tiles);
+      const gpu::WorkGroups groups = gpu::groupsInRows(push.stage == 1 ? 1 : tiles);
+      pass.record(r, bindings, push, groups.x, groups.y);
       r.barrier();
     }
   }));
@@ -141,6 +145,20 @@ TEST(SelectPixelsRule, UnderTheMinimumAPixelNeedsSamplesHoweverQuiet) {
   const auto list = sorted(selectedList(quietFilmWith(39, 39, {0.5f, 0.5f, 0.5f, 7.0f}, 0.0f), {}));
   EXPECT_EQ(list, (std::vector<uint32_t>{1558, 1559, 1598, 1599}));
   EXPECT_TRUE(selectedList(quietFilmWith(39, 39, {0.5f, 0.5f, 0.5f, 8.0f}, 0.0f), {}).empty());
+}
+
+// Pictures of 8192x8192 pixels have four times as many.
+TEST(SelectPixelsOfAFilm, MayHaveMoreTilesThanADispatchHasWorkgroupsInARow) {
+  vk::Device& device = SharedDevice::get();
+  const Film film = must(Film::create(device, 1, 16 * 65536));
+  must(gpu::runNow(device, [&](vk::CommandRecorder& r) { film.recordClear(r); }));
+  FilmStatistics statistics = must(FilmStatistics::create(device, film));
+  const vk::Buffer list = inputOf(std::vector<uint32_t>(film.pixelCount()));
+  EXPECT_EQ(must(statistics.selectPixels(device, film, list, 1, 0.05f, 0.5)), film.pixelCount());
+  const auto pixels = must(vk::readBackArray<uint32_t>(device, list, film.pixelCount()));
+  std::vector<uint32_t> all(film.pixelCount());
+  std::iota(all.begin(), all.end(), 0u);
+  EXPECT_EQ(pixels, all) << "a column of tiles one pixel wide, in order";
 }
 
 }  // namespace
