@@ -7,6 +7,9 @@ namespace limn {
 /// How many items of work fit into a time, from what earlier quanta took.
 class WorkRate {
  public:
+  /// At a time: as workgroups of 64 half of the 65,535 that every device runs in one dispatch.
+  static constexpr double kMostItems = 1 << 21;
+
   explicit WorkRate(double initialPerSecond) : m_perSecond(initialPerSecond) {}
   void measured(uint64_t items, double seconds) {
     if (items == 0 || seconds <= 0.0) return;
@@ -15,7 +18,7 @@ class WorkRate {
     const double trust = std::clamp(seconds / 0.01, 0.05, 0.5);
     m_perSecond += trust * (rate - m_perSecond);
   }
-  uint64_t itemsIn(double seconds) const { return uint64_t(std::max(1.0, m_perSecond * seconds)); }
+  uint64_t itemsIn(double seconds) const { return uint64_t(std::clamp(m_perSecond * seconds, 1.0, kMostItems)); }
   double secondsFor(uint64_t items) const { return double(items) / m_perSecond; }
 
  private:
