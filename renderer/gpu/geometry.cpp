@@ -85,10 +85,9 @@ void placeBlock(const Scene& scene, const glm::dmat4& worldFromNode, const glm::
 
 glm::dvec3 renderOriginOf(const Bounds& bounds) {
   const double radius = bounds.radius();
-  const glm::dvec3 center = bounds.center();
-  if (!(radius > 0.0) || glm::length(center) < 16.0 * radius) return glm::dvec3(0.0);
+  if (!(radius > 0.0)) return glm::dvec3(0.0);
   const double cell = 4.0 * std::exp2(std::ceil(std::log2(radius)));
-  return glm::round(center / cell) * cell;
+  return glm::round(bounds.center() / cell) * cell;
 }
 
 }  // namespace limn::gpu

@@ -26,8 +26,9 @@ std::vector<GeometryBlock> listBlocks(const Scene& scene);
 /// Writes the vertices of a block as they stand under `worldFromNode`.
 void placeBlock(const Scene& scene, const glm::dmat4& worldFromNode, const glm::dvec3& renderOrigin, GeometryBlock& block);
 
-/// Where render space has its origin: zero, unless the scene is so far out that floats would round its shapes; then a point
-/// near its centre on a coarse grid, so that moving an object seldom moves it. A function of the bounds alone.
+/// Where render space has its origin: the point next to the scene's centre of a grid of four to eight radii, so that no place is
+/// farther out than floats bear well, and moving an object seldom moves it; zero for a scene that begins less than a radius away
+/// from zero. A function of the bounds alone.
 glm::dvec3 renderOriginOf(const Bounds& bounds);
 
 }  // namespace limn::gpu
