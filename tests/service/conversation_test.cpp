@@ -264,20 +264,17 @@ TEST(Conversation, anEditIsToldAlsoWhenItsAuthorHasLeft) {
   TestService server;
   TestClient other(server.port());
   other.greet();
-  other.await<protocol::SceneMessage>();
-  server.renderer->hold(true);
+  const auto roughness = [](float value) {
+    return [value](const protocol::SceneMessage& scene) { return scene.materials.at(1).roughness == value; };
+  };
   {
     TestClient author(server.port());
     author.greet(false);
     sendRoughness(author, 1, 0.125f);
-    author.send(protocol::Ping{author.nextSeq()});
-    author.await<protocol::Pong>();    // the edit is on its way, and not acknowledged
+    other.await<protocol::SceneMessage>(roughness(0.125f));
+    author.awaitReply<protocol::Ack>(sendRoughness(author, 1, 0.25f));   // the next scene is told a while after the last
   }
-  server.waitForMetric("limn_clients", 1.0);
-  server.renderer->hold(false);
-  const auto scene = other.await<protocol::SceneMessage>();
-  EXPECT_EQ(scene.cause, protocol::SceneCause::edited);
-  EXPECT_EQ(scene.materials.at(1).roughness, 0.125f);
+  EXPECT_EQ(other.await<protocol::SceneMessage>(roughness(0.25f)).cause, protocol::SceneCause::edited);
 }
 
 TEST(Conversation, byeIsAnsweredAndTheSocketClosesWith1000) {
