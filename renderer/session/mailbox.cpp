@@ -75,11 +75,6 @@ bool Mailbox::closed() const {
   return m_closed;
 }
 
-bool Mailbox::hasPending() const {
-  const std::lock_guard lock(m_mutex);
-  return !m_pending.empty();
-}
-
 void FrameSlot::publish(std::shared_ptr<const Frame> frame) {
   {
     const std::lock_guard lock(m_mutex);

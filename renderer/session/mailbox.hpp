@@ -21,7 +21,6 @@ class Mailbox {
   /// Any thread. Wakes the render thread for good.
   void close();
   bool closed() const;
-  bool hasPending() const;
 
   static constexpr size_t kMaxPending = 4096;
 

@@ -49,7 +49,7 @@ TEST(Mailbox, laterViewEditReplacesTheEarlierOne) {
   EXPECT_THAT(seqsOf(requests), ElementsAre(5));
   EXPECT_EQ(std::get<SetView>(std::get<EditRequest>(requests[0]).edits[0]).view.eye.x, 5.0);
   EXPECT_THAT(seqsOf(superseded), ElementsAre(1, 2, 3, 4));
-  EXPECT_FALSE(box.hasPending());
+  EXPECT_FALSE(box.waitFor(0.0));
 }
 
 TEST(Mailbox, sceneEditsAreNeverDropped) {
