@@ -18,7 +18,6 @@ VkBufferUsageFlags usageFlags(const Device& device, BufferUsage usage) {
   if (has(usage, BufferUsage::storage)) flags |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   if (has(usage, BufferUsage::uniform)) flags |= VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
   if (has(usage, BufferUsage::texel)) flags |= VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
-  if (has(usage, BufferUsage::indirect)) flags |= VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
   if (!needsAddress(device, usage)) return flags;
   flags |= VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
   if (has(usage, BufferUsage::accelerationInput)) {

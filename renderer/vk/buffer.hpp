@@ -13,7 +13,6 @@ enum class BufferUsage : uint32_t {
   storage = 1,
   uniform = 2,
   texel = 4,  ///< read-only `samplerBuffer` and kin; BufferDesc::texelFormat says the element
-  indirect = 8,
   transferSrc = 16,
   transferDst = 32,
   accelerationInput = 64,     ///< what an acceleration structure is built from; nothing without ray queries

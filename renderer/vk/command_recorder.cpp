@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "renderer/vk/queue.hpp"
-#include "renderer/vk/timestamp_pool.hpp"
 
 namespace limn::vk {
 namespace {
@@ -21,7 +20,6 @@ void checkBinding(const Device& device, const ComputePipeline& pipeline, const B
     case BindingKind::uniform: LIMN_CHECK_EQ(binding.offset % limits.uniformOffsetAlignment, 0u); break;
     case BindingKind::texel: LIMN_CHECK(binding.buffer && binding.buffer->view()); break;
     case BindingKind::acceleration: LIMN_CHECK(binding.acceleration && *binding.acceleration); return;
-    default: LIMN_CHECK(binding.image && *binding.image); return;
   }
   LIMN_CHECK(binding.buffer && *binding.buffer);
   LIMN_CHECK_LE(binding.offset + binding.size, binding.buffer->size());
@@ -30,7 +28,6 @@ void checkBinding(const Device& device, const ComputePipeline& pipeline, const B
 /// VkWriteDescriptorSets and what they point to.
 struct DescriptorWrites {
   std::vector<VkDescriptorBufferInfo> buffers;
-  std::vector<VkDescriptorImageInfo> images;
   std::vector<VkBufferView> views;
   std::vector<VkAccelerationStructureKHR> structures;
   std::vector<VkWriteDescriptorSetAccelerationStructureKHR> structureWrites;
@@ -38,7 +35,6 @@ struct DescriptorWrites {
 
   explicit DescriptorWrites(std::span<const Binding> bindings) {
     buffers.reserve(bindings.size());
-    images.reserve(bindings.size());
     views.reserve(bindings.size());
     structures.reserve(bindings.size());
     structureWrites.reserve(bindings.size());
@@ -56,10 +52,6 @@ struct DescriptorWrites {
       structureWrite.accelerationStructureCount = 1;
       structureWrite.pAccelerationStructures = &structures.emplace_back(binding.acceleration->handle());
       write.pNext = &structureWrite;
-    } else if (binding.image) {
-      const VkSampler sampler = binding.kind == BindingKind::sampledImage ? binding.image->sampler() : VK_NULL_HANDLE;
-      write.pImageInfo = &images.emplace_back(
-          VkDescriptorImageInfo{sampler, binding.image->view(), binding.image->layout()});
     } else if (binding.kind == BindingKind::texel) {
       write.pTexelBufferView = &views.emplace_back(binding.buffer->view());
     } else {
@@ -147,15 +139,6 @@ void CommandRecorder::dispatch(const ComputePipeline& pipeline, std::span<const 
   if (!m_error) vkCmdDispatch(m_slot->commands, gx, gy, gz);
 }
 
-void CommandRecorder::dispatchIndirect(const ComputePipeline& pipeline, std::span<const Binding> bindings,
-                                       std::span<const std::byte> pushConstants, const Buffer& counts, size_t offset) {
-  LIMN_CHECK(has(counts.usage(), BufferUsage::indirect));
-  LIMN_CHECK_EQ(offset % 4, 0u);
-  LIMN_CHECK_LE(offset + sizeof(VkDispatchIndirectCommand), counts.size());
-  bind(pipeline, bindings, pushConstants);
-  if (!m_error) vkCmdDispatchIndirect(m_slot->commands, counts.handle(), offset);
-}
-
 void CommandRecorder::warmUp(const ComputePipeline& pipeline, std::span<const Binding> bindings) {
   const std::vector<std::byte> zeros(pipeline.pushConstantBytes());
   dispatch(pipeline, bindings, zeros, 0, 0, 0);
@@ -167,10 +150,10 @@ void CommandRecorder::barrier() {
   auto memory = typed<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);
   memory.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
   memory.srcAccessMask = VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
-  memory.dstStageMask = memory.srcStageMask | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_HOST_BIT;
+  memory.dstStageMask = memory.srcStageMask | VK_PIPELINE_STAGE_2_HOST_BIT;
   memory.dstAccessMask = VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_UNIFORM_READ_BIT |
                          VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT |
-                         VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_2_HOST_READ_BIT;
+                         VK_ACCESS_2_HOST_READ_BIT;
   if (m_device.hasRayQuery()) {
     memory.srcStageMask |= VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
     memory.srcAccessMask |= VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR;
@@ -200,13 +183,6 @@ void CommandRecorder::fillBuffer(const Buffer& dst, size_t offset, size_t size, 
   LIMN_CHECK_EQ(size % 4, 0u);
   LIMN_CHECK_LE(offset + size, dst.size());
   if (!m_error) vkCmdFillBuffer(m_slot->commands, dst.handle(), offset, size ? size : VK_WHOLE_SIZE, word);
-}
-
-void CommandRecorder::writeTimestamp(const TimestampPool& pool, uint32_t slot) {
-  LIMN_CHECK(m_recording);
-  LIMN_CHECK_LE(slot + 1, pool.slotCount());
-  if (m_error || !pool.handle()) return;
-  vkCmdWriteTimestamp2(m_slot->commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool.handle(), slot);
 }
 
 }  // namespace limn::vk

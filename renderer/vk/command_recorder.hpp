@@ -8,42 +8,33 @@
 #include "renderer/vk/acceleration_structure.hpp"
 #include "renderer/vk/buffer.hpp"
 #include "renderer/vk/compute_pipeline.hpp"
-#include "renderer/vk/image.hpp"
 
 namespace limn::vk {
 
-class TimestampPool;
 struct CommandSlot;
 
-/// A resource for one binding of the shader. Make it with storage(), uniform(), texel(), sampled(), storageImage()
-/// or acceleration().
+/// A resource for one binding of the shader. Make it with storage(), uniform(), texel() or
+/// acceleration().
 struct Binding {
   uint32_t binding = 0;
   BindingKind kind = BindingKind::storage;
   const Buffer* buffer = nullptr;
   size_t offset = 0;
   size_t size = 0;  ///< 0: to the end
-  const Image* image = nullptr;
   const AccelerationStructure* acceleration = nullptr;
 };
 
 inline Binding storage(uint32_t binding, const Buffer& buffer, size_t offset = 0, size_t size = 0) {
-  return {binding, BindingKind::storage, &buffer, offset, size, nullptr, nullptr};
+  return {binding, BindingKind::storage, &buffer, offset, size, nullptr};
 }
 inline Binding uniform(uint32_t binding, const Buffer& buffer, size_t offset = 0, size_t size = 0) {
-  return {binding, BindingKind::uniform, &buffer, offset, size, nullptr, nullptr};
+  return {binding, BindingKind::uniform, &buffer, offset, size, nullptr};
 }
 inline Binding texel(uint32_t binding, const Buffer& buffer) {
-  return {binding, BindingKind::texel, &buffer, 0, 0, nullptr, nullptr};
-}
-inline Binding sampled(uint32_t binding, const Image& image) {
-  return {binding, BindingKind::sampledImage, nullptr, 0, 0, &image, nullptr};
-}
-inline Binding storageImage(uint32_t binding, const Image& image) {
-  return {binding, BindingKind::storageImage, nullptr, 0, 0, &image, nullptr};
+  return {binding, BindingKind::texel, &buffer, 0, 0, nullptr};
 }
 inline Binding acceleration(uint32_t binding, const AccelerationStructure& structure) {
-  return {binding, BindingKind::acceleration, nullptr, 0, 0, nullptr, &structure};
+  return {binding, BindingKind::acceleration, nullptr, 0, 0, &structure};
 }
 
 /// The bytes of a push-constant struct.
@@ -71,20 +62,13 @@ class CommandRecorder {
   /// the pipeline says. A count of 0 runs nothing.
   void dispatch(const ComputePipeline& pipeline, std::span<const Binding> bindings,
                 std::span<const std::byte> pushConstants, uint32_t gx, uint32_t gy = 1, uint32_t gz = 1);
-  /// As dispatch(), the three counts read by the device from `counts` at `offset` (BufferUsage::indirect, multiple
-  /// of 4).
-  void dispatchIndirect(const ComputePipeline& pipeline, std::span<const Binding> bindings,
-                        std::span<const std::byte> pushConstants, const Buffer& counts, size_t offset = 0);
   /// A dispatch of no workgroup, for drivers that compile at first use: bind what the real dispatches bind.
   void warmUp(const ComputePipeline& pipeline, std::span<const Binding> bindings);
-  /// All earlier shader and transfer writes are visible to all later shader, transfer and indirect reads and to the
-  /// host.
+  /// All earlier shader and transfer writes are visible to all later shader and transfer reads and to the host.
   void barrier();
   void copyBuffer(const Buffer& src, size_t srcOffset, const Buffer& dst, size_t dstOffset, size_t size);
   /// Offset and size are multiples of 4; size 0: to the end.
   void fillBuffer(const Buffer& dst, size_t offset, size_t size, uint32_t word);
-  /// Writes the device's clock to `slot` when all earlier commands are done.
-  void writeTimestamp(const TimestampPool& pool, uint32_t slot);
 
   bool recording() const { return m_recording; }
   Device& device() { return m_device; }

@@ -12,8 +12,6 @@ VkDescriptorType descriptorType(BindingKind kind) {
     case BindingKind::storage: return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     case BindingKind::uniform: return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     case BindingKind::texel: return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-    case BindingKind::sampledImage: return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    case BindingKind::storageImage: return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
     case BindingKind::acceleration: return VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR;
   }
   return VK_DESCRIPTOR_TYPE_MAX_ENUM;

@@ -12,8 +12,6 @@ enum class BindingKind {
   storage,       ///< `buffer` block
   uniform,       ///< `uniform` block
   texel,         ///< samplerBuffer, isamplerBuffer, usamplerBuffer
-  sampledImage,  ///< sampler2DArray
-  storageImage,  ///< image2DArray
   acceleration,  ///< accelerationStructureEXT
 };
 

@@ -28,8 +28,6 @@ void enableFeatures(const FeatureChain& has, const DeviceFeatures& use, FeatureC
   on.root.features.shaderInt64 = use.int64;
   on.root.features.shaderFloat64 = use.float64;
   on.root.features.shaderInt16 = use.storage16;
-  on.root.features.shaderStorageImageReadWithoutFormat = has.root.features.shaderStorageImageReadWithoutFormat;
-  on.root.features.shaderStorageImageWriteWithoutFormat = has.root.features.shaderStorageImageWriteWithoutFormat;
   on.v11.storageBuffer16BitAccess = use.storage16;
   on.v12.storageBuffer8BitAccess = use.storage8;
   on.v12.shaderInt8 = use.storage8;
@@ -115,7 +113,7 @@ Result<void> Device::init() {
   m_info = (*infos)[*chosen];
   m_physical = (*devices)[*chosen];
   m_queueFamily = *computeQueueFamily(m_physical);
-  m_limits = readLimits(m_physical, m_queueFamily);
+  m_limits = readLimits(m_physical);
   if (m_options.largestBuffer > 0) m_limits.maxBufferSize = std::min(m_limits.maxBufferSize, m_options.largestBuffer);
   m_features = readFeatures(m_physical);
   m_features.pushDescriptors = m_features.pushDescriptors && m_options.pushDescriptors;

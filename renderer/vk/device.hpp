@@ -50,7 +50,7 @@ class Device {
   /// Every device the machine has, in the order in which indices count.
   static Result<std::vector<DeviceInfo>> list();
 
-  /// Waits for the device, writes the pipeline cache, and checks that every buffer and image is gone.
+  /// Waits for the device, writes the pipeline cache, and checks that every buffer is gone.
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;

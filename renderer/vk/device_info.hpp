@@ -50,12 +50,9 @@ struct DeviceLimits {
   std::array<uint32_t, 3> maxWorkGroupSize{};
   uint32_t maxPushConstants = 0;
   uint32_t maxPushDescriptors = 0;          ///< in one set; 0 without the extension
-  uint32_t maxImageDimension2D = 0;         ///< texels
-  uint32_t maxImageArrayLayers = 0;
   uint32_t storageOffsetAlignment = 1;
   uint32_t uniformOffsetAlignment = 1;
   uint32_t subgroupSize = 0;                ///< invocations; shaders must not rely on a value
-  double timestampPeriodNs = 0;             ///< 0 when the queue has no timestamps
 };
 
 /// What the opened device has switched on. Everything here is optional; what Limn needs always is not listed.

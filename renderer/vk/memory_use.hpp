@@ -5,7 +5,7 @@
 
 namespace limn::vk {
 
-/// Device memory held, by the owner named in BufferDesc and ImageDesc. Render thread; copy it to publish it.
+/// Device memory held, by the owner named in BufferDesc. Render thread; copy it to publish it.
 class MemoryUse {
  public:
   void add(const std::string& owner, uint64_t bytes);

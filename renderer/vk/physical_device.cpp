@@ -125,7 +125,7 @@ DeviceInfo describeDevice(VkPhysicalDevice device, uint32_t index) {
   return info;
 }
 
-DeviceLimits readLimits(VkPhysicalDevice device, uint32_t queueFamily) {
+DeviceLimits readLimits(VkPhysicalDevice device) {
   auto push = typed<VkPhysicalDevicePushDescriptorPropertiesKHR>(
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PUSH_DESCRIPTOR_PROPERTIES_KHR);
   auto v13 = typed<VkPhysicalDeviceVulkan13Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES);
@@ -136,11 +136,6 @@ DeviceLimits readLimits(VkPhysicalDevice device, uint32_t queueFamily) {
   if (deviceExtensions(device).count(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) v13.pNext = &push;
   vkGetPhysicalDeviceProperties2(device, &properties);
   const VkPhysicalDeviceLimits& base = properties.properties.limits;
-
-  uint32_t familyCount = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &familyCount, nullptr);
-  std::vector<VkQueueFamilyProperties> families(familyCount);
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &familyCount, families.data());
 
   DeviceLimits limits;
   limits.maxMemoryAllocationSize = v11.maxMemoryAllocationSize;
@@ -155,12 +150,9 @@ DeviceLimits readLimits(VkPhysicalDevice device, uint32_t queueFamily) {
   std::copy_n(base.maxComputeWorkGroupSize, 3, limits.maxWorkGroupSize.begin());
   limits.maxPushConstants = base.maxPushConstantsSize;
   limits.maxPushDescriptors = push.maxPushDescriptors;
-  limits.maxImageDimension2D = base.maxImageDimension2D;
-  limits.maxImageArrayLayers = base.maxImageArrayLayers;
   limits.storageOffsetAlignment = uint32_t(base.minStorageBufferOffsetAlignment);
   limits.uniformOffsetAlignment = uint32_t(base.minUniformBufferOffsetAlignment);
   limits.subgroupSize = v11.subgroupSize;
-  limits.timestampPeriodNs = families[queueFamily].timestampValidBits ? double(base.timestampPeriod) : 0.0;
   return limits;
 }
 

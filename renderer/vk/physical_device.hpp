@@ -30,7 +30,7 @@ std::set<std::string> deviceExtensions(VkPhysicalDevice device);
 /// The first queue family that computes, if any; one that does nothing else is preferred less than a general one.
 std::optional<uint32_t> computeQueueFamily(VkPhysicalDevice device);
 DeviceInfo describeDevice(VkPhysicalDevice device, uint32_t index);
-DeviceLimits readLimits(VkPhysicalDevice device, uint32_t queueFamily);
+DeviceLimits readLimits(VkPhysicalDevice device);
 DeviceFeatures readFeatures(VkPhysicalDevice device);
 /// Index into `devices` by DeviceOptions::select. Errors: "no-device", "unsupported".
 Result<size_t> chooseDevice(const std::vector<DeviceInfo>& devices, const std::string& select);

@@ -146,9 +146,7 @@ bool Queue::reached(uint64_t value) const {
 Result<void> Queue::addDescriptorPool(CommandSlot& slot) {
   std::vector<VkDescriptorPoolSize> sizes{{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kDescriptorsPerPool},
                                           {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kDescriptorsPerPool},
-                                          {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, kDescriptorsPerPool},
-                                          {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kDescriptorsPerPool},
-                                          {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, kDescriptorsPerPool}};
+                                          {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, kDescriptorsPerPool}};
   if (m_device.hasRayQuery()) sizes.push_back({VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, kSetsPerPool});
   auto info = typed<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
   info.maxSets = kSetsPerPool;

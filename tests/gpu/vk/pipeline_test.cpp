@@ -2,9 +2,6 @@
 
 #include <array>
 
-#include "tests/gpu/vk/arguments.spv.hpp"
-#include "tests/gpu/vk/count.spv.hpp"
-#include "tests/gpu/vk/image.spv.hpp"
 #include "tests/gpu/vk/scale.spv.hpp"
 #include "tests/gpu/vk/texel.spv.hpp"
 
@@ -133,60 +130,6 @@ TEST_P(PipelineTest, TexelAndUniformBuffersAreRead) {
   finish(*device, recorder);
   const auto result = must(readBackArray<float>(*device, out, 64));
   for (size_t i = 0; i < 64; ++i) EXPECT_EQ(result[i], float(i) + 1000 * float(i / 4) + bias[i % 4]) << i;
-}
-
-TEST_P(PipelineTest, ImagesAreSampledAndStored) {
-  ImageDesc desc;
-  desc.width = 5;
-  desc.height = 3;
-  desc.layers = 2;
-  desc.filter = VK_FILTER_NEAREST;
-  desc.name = "source";
-  desc.owner = "test";
-  Image source = must(Image::create(*device, desc));
-  std::vector<uint8_t> texels;
-  for (uint32_t i = 0; i < 5 * 3 * 4; ++i) texels.push_back(uint8_t(3 * i));
-  must(source.uploadLayer(1, std::as_bytes(std::span<const uint8_t>(texels))));
-  desc.layers = 1;
-  desc.storage = true;
-  desc.name = "target";
-  const Image target = must(Image::create(*device, desc));
-  const Buffer out = must(Buffer::create(*device, storageDesc(5 * 3 * 16, "out")));
-  PipelineDesc pipelineDesc;
-  pipelineDesc.name = "image";
-  pipelineDesc.spirv = imageSpirv;
-  pipelineDesc.layout = {{0, BindingKind::sampledImage}, {1, BindingKind::storageImage}, {2, BindingKind::storage}};
-  const ComputePipeline pipeline = must(ComputePipeline::create(*device, pipelineDesc));
-  const std::array bindings{sampled(0, source), storageImage(1, target), storage(2, out)};
-  CommandRecorder recorder(*device);
-  recorder.begin();
-  recorder.dispatch(pipeline, bindings, {}, 2, 1);
-  finish(*device, recorder);
-  const auto result = must(readBackArray<float>(*device, out, 60));
-  for (size_t i = 0; i < 60; ++i) EXPECT_NEAR(result[i] * 255, texels[4 * (i / 4) + 3 - i % 4], 0.01) << i;
-}
-
-TEST_P(PipelineTest, TheDeviceWritesTheCountsOfAnIndirectDispatch) {
-  const Buffer counts =
-      makeBuffer(std::vector<uint32_t>(8, 0), "counts", BufferUsage::storage | BufferUsage::indirect);
-  const Buffer total = makeBuffer({0}, "total");
-  PipelineDesc desc;
-  desc.name = "arguments";
-  desc.spirv = argumentsSpirv;
-  desc.layout = {{0, BindingKind::storage}};
-  desc.pushConstantBytes = 16;
-  const ComputePipeline arguments = must(ComputePipeline::create(*device, desc));
-  desc.name = "count";
-  desc.spirv = countSpirv;
-  desc.pushConstantBytes = 0;
-  const ComputePipeline count = must(ComputePipeline::create(*device, desc));
-  CommandRecorder recorder(*device);
-  recorder.begin();
-  recorder.dispatch(arguments, std::array{storage(0, counts)}, pushBytes(std::array<uint32_t, 4>{3, 5, 7, 0}), 1);
-  recorder.barrier();
-  recorder.dispatchIndirect(count, std::array{storage(0, total)}, {}, counts, 16);
-  finish(*device, recorder);
-  EXPECT_EQ(words(total)[0], 105u);
 }
 
 TEST_P(PipelineTest, WarmUpRunsNothingAndLeavesNoFirstUseBehind) {

@@ -4,8 +4,6 @@
 #include <array>
 
 #include "renderer/base/clock.hpp"
-#include "renderer/vk/readback_ring.hpp"
-#include "renderer/vk/timestamp_pool.hpp"
 #include "tests/gpu/vk/spin.spv.hpp"
 
 namespace limn::vk {
@@ -107,102 +105,6 @@ TEST_F(SubmissionTest, SubmissionsNeedNoBarrierBetweenThem) {
     for (uint32_t turn = 0; turn < 1000; ++turn) expected = (expected ^ (expected >> 7)) * 1664525u + turn;
   }
   EXPECT_EQ(must(readBackArray<uint32_t>(*device, m_state, 1))[0], expected);
-}
-
-TEST_F(SubmissionTest, TimestampsGrowAndNameTheirStages) {
-  TimestampPool pool = must(TimestampPool::create(*device, 3, "stages"));
-  for (int round = 0; round < 2; ++round) {
-    CommandRecorder recorder(*device);
-    recorder.begin();
-    pool.reset(recorder);
-    pool.begin(recorder, "trace");
-    spin(recorder, kLong);
-    pool.end(recorder);
-    pool.begin(recorder, "film");
-    spin(recorder, 1000);
-    pool.end(recorder);
-    finish(*device, recorder);
-    const auto stages = must(pool.read());
-    ASSERT_EQ(stages.size(), 2u);
-    EXPECT_EQ(stages[0].stage, "trace");
-    EXPECT_EQ(stages[1].stage, "film");
-    if (device->limits().timestampPeriodNs == 0) continue;
-    const auto ticks = must(pool.readTicks());
-    for (size_t i = 1; i < ticks.size(); ++i) EXPECT_GE(ticks[i], ticks[i - 1]) << i;
-    // A stage lasts as long as its two ticks say.
-    ASSERT_EQ(ticks.size(), 4u);
-    for (size_t i = 0; i < 2; ++i) {
-      const double ms = double(ticks[2 * i + 1] - ticks[2 * i]) * device->limits().timestampPeriodNs * 1e-6;
-      EXPECT_NEAR(stages[i].ms, ms, 1e-6 * ms) << i;
-    }
-    EXPECT_GT(stages[0].ms, 0.0);
-  }
-}
-
-class ReadbackRingTest : public SubmissionTest {
- protected:
-  /// Sends one word through the ring; false when no slot is free.
-  bool send(ReadbackRing& ring, uint32_t word) {
-    const auto slot = ring.take();
-    if (!slot) return false;
-    CommandRecorder recorder(*device);
-    recorder.begin();
-    recorder.fillBuffer(m_state, 0, 4, word);
-    recorder.barrier();
-    ring.copy(recorder, *slot, m_state, 0, 4);
-    recorder.end();
-    ring.submitted(*slot, must(device->submit(recorder)));
-    return true;
-  }
-  uint32_t receive(ReadbackRing& ring) {
-    const auto slot = ring.ready();
-    EXPECT_TRUE(slot.has_value());
-    const uint32_t word = *reinterpret_cast<const uint32_t*>(ring.bytes(*slot).data());
-    ring.release(*slot);
-    return word;
-  }
-};
-
-TEST_F(ReadbackRingTest, SlotsComeBackInOrderAndAreUsedAgain) {
-  ReadbackRing ring = must(ReadbackRing::create(*device, 4, 3, "ring", "test"));
-  EXPECT_FALSE(ring.ready().has_value());
-  for (uint32_t round = 0; round < 4; ++round) {
-    for (uint32_t i = 0; i < 3; ++i) EXPECT_TRUE(send(ring, 10 * round + i));
-    EXPECT_FALSE(send(ring, 99));
-    must(device->waitIdle());
-    EXPECT_EQ(receive(ring), 10 * round);
-    EXPECT_TRUE(send(ring, 10 * round + 3));
-    must(device->waitIdle());
-    for (uint32_t i = 1; i < 4; ++i) EXPECT_EQ(receive(ring), 10 * round + i);
-    EXPECT_EQ(ring.pending(), 0u);
-  }
-}
-
-TEST_F(ReadbackRingTest, ASlotIsNotReadyBeforeItsWorkIsDone) {
-  ReadbackRing ring = must(ReadbackRing::create(*device, 4, 2, "ring", "test"));
-  const auto unsent = ring.take();
-  ASSERT_TRUE(unsent.has_value());
-  EXPECT_FALSE(ring.ready().has_value());
-  ring.release(*unsent);
-  submitSpin(kLong);
-  ASSERT_TRUE(send(ring, 6));
-  EXPECT_FALSE(ring.ready().has_value());
-  must(device->waitIdle());
-  EXPECT_EQ(receive(ring), 6u);
-}
-
-TEST_F(ReadbackRingTest, AShaderMayWriteIntoTheSlot) {
-  ReadbackRing ring = must(ReadbackRing::create(*device, 4, 2, "ring", "test"));
-  const auto slot = ring.take();
-  CommandRecorder recorder(*device);
-  recorder.begin();
-  recorder.fillBuffer(ring.buffer(*slot), 0, 4, 12);
-  recorder.barrier();
-  recorder.dispatch(m_spin, std::array{storage(0, ring.buffer(*slot))}, pushBytes(uint32_t(1)), 1);
-  recorder.end();
-  ring.submitted(*slot, must(device->submit(recorder)));
-  must(device->waitIdle());
-  EXPECT_EQ(receive(ring), 12u * 1664525u);
 }
 
 }  // namespace
