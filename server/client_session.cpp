@@ -45,12 +45,8 @@ bool ClientSession::push(OutgoingMessage message, bool isScene) {
 bool ClientSession::queue(std::string text) { return push({false, std::move(text), nullptr}); }
 
 bool ClientSession::queueScene(std::string text) {
-  const auto unsent = std::find_if(m_queue.begin(), m_queue.end(), [](const Queued& queued) { return queued.isScene; });
-  if (unsent == m_queue.end()) return push({false, std::move(text), nullptr}, true);
-  m_queuedBytes -= counted(unsent->message);
-  unsent->message.head = std::move(text);
-  m_queuedBytes += counted(unsent->message);
-  return true;
+  dropScene();
+  return push({false, std::move(text), nullptr}, true);
 }
 
 void ClientSession::dropScene() {

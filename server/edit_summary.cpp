@@ -43,6 +43,18 @@ std::optional<json> without(json edit, const std::string& place) {
   return !tellsWhich && batchOf({edit}) ? std::optional(edit) : std::nullopt;
 }
 
+/// Without what the other edit, of the same thing, says; nothing where that was all.
+std::optional<json> withoutAllOf(const json& edit, const json& other) {
+  json rest = edit;
+  bool says = false;
+  for (const auto& [name, value] : edit.items()) {
+    if (name == "target" || name == edit["target"]) continue;
+    if (other.contains(name)) rest.erase(name);
+    else says = true;
+  }
+  return says && batchOf({rest}) ? std::optional(rest) : std::nullopt;
+}
+
 }  // namespace
 
 void EditSummary::add(const Accepted& accepted) {
@@ -68,9 +80,11 @@ void EditSummary::addEdit(const protocol::Edit& edit) {
 }
 
 bool EditSummary::forget(const protocol::Edit& edit, const std::string& place) {
-  const auto kept = m_newest.find(subjectOf(jsonOf(edit)));
+  const json asked = jsonOf(edit);
+  const auto kept = m_newest.find(subjectOf(asked));
   if (kept == m_newest.end()) return false;
-  if (std::optional<json> rest = without(kept->second, place)) kept->second = std::move(*rest);
+  std::optional<json> rest = place.empty() ? withoutAllOf(kept->second, asked) : without(kept->second, place);
+  if (rest) kept->second = std::move(*rest);
   else m_newest.erase(kept);
   return true;
 }

@@ -38,6 +38,13 @@ void nameTechniques(protocol::Batch& batch, std::string inUse) {
   }
 }
 
+/// Refusals that another start may not meet: a file that was not there, room that the device had not got.
+bool mayFitLater(const std::string& code) {
+  for (const char* passing : {"io", "path", "out-of-memory", "limit", "size"})
+    if (code == passing) return true;
+  return false;
+}
+
 /// What the renderer refused of a request, "/edits/N/field".
 struct KeptPlace {
   size_t edit = SIZE_MAX;              ///< of the request; SIZE_MAX: none of them is to blame
@@ -45,7 +52,7 @@ struct KeptPlace {
 };
 KeptPlace keptPlaceOf(const Error& error) {
   const std::string edits = "/edits/";
-  if (!error.place.starts_with(edits) || error.code == "io" || error.code == "path") return {};
+  if (!error.place.starts_with(edits) || mayFitLater(error.code)) return {};
   const size_t field = std::min(error.place.find('/', edits.size()), error.place.size());
   return {std::strtoull(error.place.c_str() + edits.size(), nullptr, 10), error.place.substr(field)};
 }
@@ -115,11 +122,11 @@ std::vector<protocol::Edit> Service::noteSettled(const Origin& from) {
   return asked ? std::move(asked.mapped()) : std::vector<protocol::Edit>();
 }
 
-// What does not fit any more is forgotten, and the others that came with it are asked for again, as they are by now. A file that is
-// not there may be there again at the next start.
+// What does not fit any more is forgotten, and the others that came with it are asked for again, as they are by now.
 void Service::noteRefused(const ErrorReply& reply) {
   if (reply.to.client != kJournal) return;
-  logWarning("an edit of the journal does not fit any more: " + reply.error.text());
+  const char* what = mayFitLater(reply.error.code) ? "cannot be taken up now: " : "does not fit any more: ";
+  logWarning(std::string("an edit of the journal ") + what + reply.error.text());
   const std::vector<protocol::Edit> asked = noteSettled(reply.to);
   const KeptPlace place = keptPlaceOf(reply.error);
   if (!m_config.journal || place.edit >= asked.size()) return;

@@ -13,7 +13,8 @@ constexpr ConnectionId kNobody = 0;
 /// The renderer's place, "/edits/N/field" of a request, as the place in the message that asked, which has not what is `unsaid`.
 std::string placeInMessage(std::string place, uint32_t seq, std::string_view unsaid) {
   if (!place.starts_with("/edits/")) return place;
-  if (place.starts_with(unsaid)) place.erase(0, unsaid.size());
+  if (unsaid.starts_with(place)) place.clear();
+  else if (place.starts_with(unsaid)) place.erase(0, unsaid.size());
   return "seq " + std::to_string(seq) + (place.empty() ? "" : " ") + place;
 }
 

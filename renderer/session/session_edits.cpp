@@ -226,8 +226,8 @@ void Session::Impl::refuse(const EditRequest& request, const Error& why) {
   replies.push(ErrorReply{request.from, {why.code, why.message, place}});
 }
 
-// Requests of one turn are redone together, and answered when that is done. Where the device has no room each is tried alone, in
-// order: one that is refused is as if it had never come, and takes no other along.
+// Requests of one turn are redone together, and answered when that is done. Where the device has no room halves of them are tried, in
+// order, down to one: that which is refused is as if it had never come, and takes no other along.
 Result<void> Session::Impl::redoPending() {
   std::vector<PendingEdit> edits = std::exchange(pending, {});
   ChangeSet changes;
@@ -243,11 +243,12 @@ Result<void> Session::Impl::redoPending() {
     refuse(edits[0].request, redone.error());
     return {};
   }
-  for (PendingEdit& edit : edits) {
-    if (auto done = handle(edit.request); !done) return done;
-    if (auto done = redoPending(); !done) return done;
+  for (size_t i = 0; i < edits.size(); ++i) {
+    if (auto done = handle(edits[i].request); !done) return done;
+    if (i + 1 == edits.size() / 2)
+      if (auto done = redoPending(); !done) return done;
   }
-  return {};
+  return redoPending();
 }
 
 Result<void> Session::Impl::redo(const ChangeSet& changes) {

@@ -62,8 +62,7 @@ TEST(EditSummary, forgetsWhatIsRefusedAndNoMore) {
   protocol::CameraEdit camera;
   camera.view.up = {0.0, 1.0, 0.0};
   const protocol::TechniqueEdit chosen{"path-tracing", {{{"gone", 1.0}, {"bounces", 2.0}}}};
-  for (const protocol::Edit& edit : {protocol::Edit(material), protocol::Edit(camera), protocol::Edit(chosen), protocol::Edit(protocol::ImageEdit{640, 480})})
-    summary.add({edited(edit)});
+  for (const auto& edit : {edited(material), edited(camera), edited(chosen), edited(protocol::ImageEdit{640, 480})}) summary.add({edit});
   EXPECT_TRUE(summary.forget(chosen, "/parameters/gone"));
   EXPECT_TRUE(summary.forget(material, "/roughness"));
   EXPECT_TRUE(summary.forget(camera, "/view/target")) << "half a view is none";
@@ -75,6 +74,19 @@ TEST(EditSummary, forgetsWhatIsRefusedAndNoMore) {
   EXPECT_TRUE(summary.forget(material, "/material"));
   EXPECT_EQ(messagesOf(summary), (Messages{edited(protocol::ImageEdit{640, 480})}));
   EXPECT_FALSE(summary.forget(material, "/metallic"));
+}
+
+TEST(EditSummary, aSkyThatIsRefusedLeavesItsLight) {
+  EditSummary summary;
+  protocol::EnvironmentEdit light, image;
+  light.radiance = {0.5, 0.5, 0.5};
+  image.image = "sky.hdr";
+  summary.add({edited(light)});
+  summary.add({edited(image)});
+  EXPECT_TRUE(summary.forget(image, ""));
+  EXPECT_EQ(messagesOf(summary), (Messages{edited(light)}));
+  EXPECT_TRUE(summary.forget(light, ""));
+  EXPECT_EQ(messagesOf(summary), Messages{});
 }
 
 TEST(EditSummary, aSizeComesWithItsTechnique) {

@@ -144,7 +144,7 @@ TEST(Peers, idleExitEndsTheLoop) {
 }
 
 TEST(Peers, timeInWhichNobodyCanComeIsNotIdle) {
-  constexpr double kIdle = 0.5;        // [s]
+  constexpr double kIdle = 1.5;        // [s]
   TestService::Options options;
   options.ready = false;
   options.configure = [](ServiceConfig& config) { config.idleExitSeconds = kIdle; };

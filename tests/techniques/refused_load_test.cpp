@@ -1,5 +1,5 @@
-// What the device cannot hold, a scene or a picture or a technique or the lights that an edit makes, is refused, and what was before it is rendered on as if nothing had
-// been asked.
+// What the device cannot hold, a scene or a picture or a technique or the lights that an edit makes, is refused, and what was
+// before it is rendered on as if nothing had been asked.
 #include <gtest/gtest.h>
 
 #include "renderer/techniques/technique.hpp"

@@ -105,7 +105,8 @@ TEST_F(Restart, ABatchThatUndoesItselfCostsNothing) {
   few.parameters = {{"maxBounces", 5.0}};
   many.parameters = {{"maxBounces", 32.0}};
   const Outcome parameter = outcomeOf({few, many}), size = outcomeOf({SetImageSize{48, 40}, SetImageSize{32, 32}});
-  const Outcome scene = outcomeOf({SetMaterial{.material = 0, .roughness = 0.9f}, SetMaterial{.material = 0, .roughness = rich().scene.materials[0].roughness}});
+  const SetMaterial there{.material = 0, .roughness = 0.9f}, back{.material = 0, .roughness = rich().scene.materials[0].roughness};
+  const Outcome scene = outcomeOf({there, back});
   for (const Outcome& outcome : {parameter, size, scene}) {
     EXPECT_EQ(outcome.ack.cost, CostClass::none);
     EXPECT_EQ(outcome.restarts, 0u);
@@ -181,7 +182,7 @@ TEST_F(Restart, OneBadEditOfABatchChangesNothingAndIsNamed) {
       {"light", with<SetLight>([](auto& e) { e.light = 7; })},
       {"node", with<SetNodeTransform>([](auto& e) { e.node = 1000; })},
       {"radiance", with<SetEnvironment>([](auto& e) { e.radiance = glm::vec3(-1.0f); })},
-      {"up", with<SetView>([](auto& e) { e.view = rich().scene.view; e.view.up = glm::dvec3(0.0); })},
+      {"view/up", with<SetView>([](auto& e) { e.view = rich().scene.view; e.view.up = glm::dvec3(0.0); })},
       {"exposure", with<SetResolve>([](auto& e) { e.exposure = 1000.0f; })},
       {"width", with<SetImageSize>([](auto& e) { e.width = 4; e.height = 32; })},
       {"height", with<SetImageSize>([](auto& e) { e.width = 32; e.height = 100000; })},
