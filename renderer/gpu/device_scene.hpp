@@ -26,7 +26,7 @@ class DeviceScene {
   /// Brings the mirror up to date. Errors: "limit", "out-of-memory", "device-lost"; then the mirror is unusable until a sync
   /// with `everything` succeeds.
   Result<SyncReport> sync(const Scene& scene, const ChangeSet& changes);
-  /// Whether the device has room for an environment image, before a sync that nobody could take back.
+  /// Whether the device has room for an environment image, so that an edit is refused by its place before anything is tried.
   /// Errors: "limit", "out-of-memory".
   Result<void> checkEnvironment(const Image& image) const;
 
