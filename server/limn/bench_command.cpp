@@ -23,9 +23,10 @@ Result<void> writeText(const std::string& file, const std::string& text) {
 }
 
 void printScene(const SceneResult& scene) {
-  std::printf("%s: reference of %llu samples, noise %.2g%s\n", scene.name.c_str(),
-              static_cast<unsigned long long>(scene.referenceSamples), scene.referenceNoise,
-              scene.referenceFineEnough ? "" : ", not 20 times finer than the runs");
+  std::printf("%s: reference of %llu samples, noise %.2g", scene.name.c_str(),
+              static_cast<unsigned long long>(scene.referenceSamples), scene.referenceNoise);
+  if (scene.referenceMissing > 0.0) std::printf(", 20 times finer than the runs in %.0f s more", scene.referenceMissing);
+  std::printf("\n");
   for (const Curve& curve : scene.curves) {
     std::printf("  %-18s", curve.technique.c_str());
     for (const CurvePoint& point : curve.points) std::printf("  %.2f s %.2e", point.seconds, point.relMse);

@@ -41,6 +41,16 @@ std::string errorFigures(const BenchResults& results) {
   return text + peers;
 }
 
+/// How far references are from being kReferenceMargin times finer than the smallest error.
+std::string referenceFigures(const BenchResults& results) {
+  std::string text = "\n## References\n\n" + headOf({"scene", "samples", "s", "noise", "smallest error", "s missing until it is " +
+                                                     number(kReferenceMargin) + " times finer"});
+  for (const SceneResult& scene : results.scenes)
+    text += lineOf({scene.name, std::to_string(scene.referenceSamples), number(scene.referenceSeconds, "%.0f"),
+                    short2(scene.referenceNoise), short2(scene.smallestError), number(scene.referenceMissing, "%.0f")});
+  return text;
+}
+
 std::string convergenceFigures(const BenchResults& results) {
   std::string lines;
   for (const SceneResult& scene : results.scenes)
@@ -143,7 +153,7 @@ std::string resultsFigures(const BenchResults& results) {
   std::string text = "# Figures of a benchmark\n\nLimn " + results.version + " on " + results.device + " (" +
                      results.driver + "), " + std::to_string(o.width) + "x" + std::to_string(o.height) + " pixels, " +
                      std::to_string(o.seeds) + " seeds, made in " + number(results.seconds / 60.0) + " minutes.\n\n";
-  text += errorFigures(results) + convergenceFigures(results) + calibrationFigures(results) + growthFigures(results) +
+  text += errorFigures(results) + referenceFigures(results) + convergenceFigures(results) + calibrationFigures(results) + growthFigures(results) +
           ablationFigures(results) + hardCaseFigures(results);
   for (const std::string& sentence : results.absent) text += "\n" + sentence + "\n";
   return text;

@@ -127,12 +127,16 @@ std::string needsText(const SceneResult& scene) {
   return text;
 }
 
+std::string missingText(const SceneResult& scene) {
+  return std::isfinite(scene.referenceMissing) ? ", for which about " + number(scene.referenceMissing, "%.2g") + " s more are needed" : "";
+}
+
 std::string referenceText(const SceneResult& scene) {
   const std::string noise = "noise " + number(scene.referenceNoise) + ", smallest error " + number(scene.smallestError);
   std::string text = "<p>Reference: " + std::to_string(scene.referenceSamples) + " samples of a pixel in " +
                      number(scene.referenceSeconds) + " s, " + noise + ". ";
-  if (!scene.referenceFineEnough)
-    text += marked("Its time was over before it was " + number(kReferenceMargin) + " times finer.", true);
+  if (scene.referenceMissing > 0.0)
+    text += marked("Its time was over before it was " + number(kReferenceMargin) + " times finer" + missingText(scene) + ".", true);
   if (!scene.unsupported.empty()) text += " Not supported: " + joined(scene.unsupported) + ".";
   return text + "</p>\n";
 }

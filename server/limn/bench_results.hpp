@@ -44,7 +44,7 @@ struct SceneResult {
   uint64_t referenceSamples = 0;
   double referenceSeconds = 0.0, referenceNoise = 0.0;
   double smallestError = 0.0;          ///< of all that is reported here
-  bool referenceFineEnough = false;    ///< kReferenceMargin times finer than that, by its noise and its samples
+  double referenceMissing = 0.0;       ///< [s] until it is kReferenceMargin times finer than that, by its noise and its samples
   std::string referencePng;
   std::vector<std::string> unsupported;///< features of the file
   std::vector<Run> runs;

@@ -137,6 +137,13 @@ class SceneBench {
     return most;
   }
 
+  /// 0: the reference is fine enough. Infinity: what it is to be finer than is no positive number, for its noise is too large.
+  double secondsMissing(const ReferencePictures& reference, double smallest) const {
+    if (!(smallest > 0.0)) return std::numeric_limits<double>::infinity();
+    const double byNoise = reference.noise() / smallest, bySamples = mostSamplesOfJudge() / double(reference.samples());
+    return std::max(kReferenceMargin * std::max(byNoise, bySamples) - 1.0, 0.0) * reference.seconds();
+  }
+
   /// Samples until the reference's noise is small beside every error, or its time is over. What an earlier benchmark
   /// kept is not made again.
   Result<ReferencePictures> makeReference() {
@@ -150,9 +157,8 @@ class SceneBench {
         const Result<double> smallest = smallestError(reference);
         if (!smallest) return smallest.error();
         m_result.smallestError = *smallest;
-        m_result.referenceFineEnough = reference.noise() * kReferenceMargin <= *smallest &&
-                                       double(reference.samples()) >= kReferenceMargin * mostSamplesOfJudge();
-        if (m_result.referenceFineEnough || spent >= m_options.referenceSeconds * 0.99) break;
+        m_result.referenceMissing = secondsMissing(reference, *smallest);
+        if (m_result.referenceMissing == 0.0 || spent >= m_options.referenceSeconds * 0.99) break;
       }
       const double before = reference.seconds();
       if (Result<void> done = reference.refine(m_device, m_loaded, next); !done) return done.error();

@@ -209,7 +209,8 @@ void writeScene(JsonWriter& json, const SceneResult& scene) {
   json.field("seconds", scene.referenceSeconds);
   json.field("noise", scene.referenceNoise);
   json.field("smallestError", scene.smallestError);
-  json.field("fineEnough", scene.referenceFineEnough);
+  json.field("fineEnough", scene.referenceMissing == 0.0);
+  json.field("secondsMissing", scene.referenceMissing);
   json.endObject();
   writeList(json, "curves", scene.curves, writeCurve);
   writeList(json, "runs", scene.runs, writeRun);
