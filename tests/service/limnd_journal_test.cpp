@@ -45,15 +45,6 @@ void edit(TestClient& client, uint32_t material, float roughness) {
   client.awaitReply<protocol::Ack>(seq);
 }
 
-/// An asset root with a scene to begin with, and one to be loaded, which may change.
-std::string changingScenes(const test::ScratchDirectory& scratch) {
-  const std::string scenes = scratch.file("scenes");
-  fs::create_directories(scenes);
-  fs::copy_file(kScene, scenes + "/cornell-box.glb");
-  fs::copy_file(kScenes + "/cornell-glossy.glb", scenes + "/loaded.glb");
-  return scenes;
-}
-
 /// The file that is being kept in the directory.
 std::string journalIn(const test::ScratchDirectory& scratch) {
   for (const auto& entry : fs::directory_iterator(scratch.file("journal")))
@@ -79,6 +70,19 @@ std::string setAside(const test::ScratchDirectory& scratch) {
 void kill(Daemon& daemon) {
   daemon.process.signal(SIGKILL);
   EXPECT_EQ(daemon.process.wait(), -SIGKILL);
+}
+
+/// An asset root with a scene to begin with, and one that may change, which was loaded and edited by a daemon that has ended.
+std::string editedLoadedScene(const test::ScratchDirectory& scratch) {
+  const std::string scenes = scratch.file("scenes");
+  fs::create_directories(scenes);
+  fs::copy_file(kScene, scenes + "/cornell-box.glb");
+  fs::copy_file(kScenes + "/cornell-glossy.glb", scenes + "/loaded.glb");
+  Kept kept(scratch, scenes);
+  load(kept.client, "loaded.glb");
+  edit(kept.client, 1, 0.625f);
+  kill(kept.daemon);
+  return scenes;
 }
 
 TEST(LimndJournal, everythingAcknowledgedOutlivesTheProcess) {
@@ -171,13 +175,7 @@ TEST(LimndJournal, theSceneThatWasLoadedLastComesBack) {
 
 TEST(LimndJournal, aLoadedSceneThatHasChangedKeepsNoneOfItsEdits) {
   const test::ScratchDirectory scratch;
-  const std::string scenes = changingScenes(scratch);
-  {
-    Kept kept(scratch, scenes);
-    load(kept.client, "loaded.glb");
-    edit(kept.client, 1, 0.625f);
-    kill(kept.daemon);
-  }
+  const std::string scenes = editedLoadedScene(scratch);
   {
     Kept kept(scratch, scenes);
     EXPECT_EQ(describe(kept.client).materials.at(1).roughness, 0.625f) << "it has not changed yet";
@@ -237,13 +235,7 @@ TEST(LimndJournal, whatAFullDiskKeptOutIsWrittenOnceThereIsRoom) {
 
 TEST(LimndJournal, aLoadedSceneThatIsSpoiltKeepsNoDaemonFromStarting) {
   const test::ScratchDirectory scratch;
-  const std::string scenes = changingScenes(scratch);
-  {
-    Kept kept(scratch, scenes);
-    load(kept.client, "loaded.glb");
-    edit(kept.client, 1, 0.625f);
-    kill(kept.daemon);
-  }
+  const std::string scenes = editedLoadedScene(scratch);
   std::ofstream(scenes + "/loaded.glb") << "no glTF any more";
   Kept kept(scratch, scenes);
   const auto scene = describe(kept.client);
